@@ -1,0 +1,37 @@
+"""Every error this package raises on purpose; all derive from `NispError`."""
+
+from __future__ import annotations
+
+
+class NispError(Exception):
+    """Base of all errors that a user can cause and mend."""
+
+
+class MeshError(NispError):
+    """An input asset cannot be read or makes no sense.
+
+    The text names the file, the place in it (line or element), what was expected and what was
+    found.
+    """
+
+
+class FitError(NispError):
+    """The networks could not be fitted to the asset."""
+
+
+class QueryError(NispError):
+    """A query to a model was malformed (shape, dtype, non-finite points)."""
+
+
+class FormatError(NispError):
+    """A `.nisp` container is malformed.
+
+    Attributes: `section` (four-character code or "header"), `field`, `expected`, `found`.
+    """
+
+    def __init__(self, section: str, field: str, expected: object, found: object) -> None:
+        super().__init__(f"section {section}, field {field}: expected {expected}, found {found}")
+        self.section = section
+        self.field = field
+        self.expected = expected
+        self.found = found
