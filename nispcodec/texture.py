@@ -1,0 +1,127 @@
+"""Textures as arrays: decode an image file's bytes and look colours up by UV.
+
+The one sampler of the package: queries, metrics and pictures must agree on it to the last bit.
+"""
+
+from __future__ import annotations
+
+import io
+import struct
+import warnings
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from nispcodec.asset import Material, Texture
+from nispcodec.errors import MeshError
+
+if TYPE_CHECKING:
+    import PIL.Image
+
+Image = NDArray[np.float32]
+Coordinates = NDArray[np.floating]
+
+# What Pillow's readers raise for malformed files.
+_BROKEN = (OSError, ValueError, SyntaxError, EOFError, struct.error)
+
+
+def decode_image(texture: Texture) -> Image:
+    """The texture's pixels: (h, w, 4) float32 in [0, 1], RGBA as stored, top row first.
+
+    Grey, palette and 16-bit images are widened; an image without alpha gets alpha 1.
+    Raises MeshError, naming the texture, for bytes that are no image and for more pixels than
+    Pillow's limit of 89 million.
+    """
+    import PIL.Image
+
+    try:
+        # Pillow's guard against decompression bombs only warns below twice its limit.
+        with (
+            warnings.catch_warnings(action="error", category=PIL.Image.DecompressionBombWarning),
+            PIL.Image.open(io.BytesIO(texture.data)) as image,
+        ):
+            return _to_rgba(image)
+    except (*_BROKEN, PIL.Image.DecompressionBombWarning, PIL.Image.DecompressionBombError) as why:
+        raise MeshError(f"texture {texture.name}: expected an image, found: {why}") from why
+
+
+def sample_texture(
+    image: Image,
+    uv: Coordinates,
+    wrap: tuple[str, str] = ("repeat", "repeat"),
+    filter: str = "linear",
+) -> Image:
+    """Colours (n, c) float32 of an (h, w, c) image at (n, 2) finite UVs, origin bottom-left.
+
+    Texel centres lie at half-integers, as in OpenGL and glTF; `wrap` and `filter` are those of
+    `TextureMap`. Never filters between mip levels.
+    """
+    height, width = image.shape[:2]
+    x = np.asarray(uv[:, 0], dtype=np.float64) * width
+    y = (1.0 - np.asarray(uv[:, 1], dtype=np.float64)) * height
+    if filter == "nearest":
+        return image[_texel(np.floor(y), height, wrap[1]), _texel(np.floor(x), width, wrap[0])]
+    left, top = np.floor(x - 0.5), np.floor(y - 0.5)
+    columns = [_texel(left + step, width, wrap[0]) for step in (0, 1)]
+    rows = [_texel(top + step, height, wrap[1]) for step in (0, 1)]
+    right = (x - 0.5 - left).astype(np.float32)[:, None]
+    low = (y - 0.5 - top).astype(np.float32)[:, None]
+    above = _mix(image[rows[0], columns[0]], image[rows[0], columns[1]], right)
+    below = _mix(image[rows[1], columns[0]], image[rows[1], columns[1]], right)
+    return _mix(above, below, low)
+
+
+def base_color(material: Material, image: Image | None, uv: Coordinates) -> Image:
+    """Base colour (n, 4) float32 at (n, 2) UVs: sRGB-encoded RGB and linear alpha, in [0, 1].
+
+    `image` holds the pixels of the material's base-colour map, None when it has none. The factor
+    is linear (glTF 2.0, 3.9.2), so texels are decoded, multiplied and encoded again.
+    """
+    factor = np.asarray(material.base_color, dtype=np.float32)
+    if image is None:
+        return np.tile(_encoded(factor[None]), (len(uv), 1))
+    used = material.maps["base_color"]
+    texels = sample_texture(image, uv, used.wrap, used.filter)
+    if (factor == 1).all():
+        return texels
+    linear = np.concatenate([srgb_to_linear(texels[:, :3]), texels[:, 3:]], axis=1)
+    return _encoded(linear * factor)
+
+
+def srgb_to_linear(values: Image) -> Image:
+    """IEC 61966-2-1 decoding, elementwise, of values in [0, 1]."""
+    curved = ((values + 0.055) / 1.055) ** 2.4
+    return np.where(values <= 0.04045, values / 12.92, curved).astype(np.float32)
+
+
+def linear_to_srgb(values: Image) -> Image:
+    """IEC 61966-2-1 encoding, elementwise, of values in [0, 1]."""
+    curved = 1.055 * np.maximum(values, 0.0031308) ** (1 / 2.4) - 0.055
+    return np.where(values <= 0.0031308, values * 12.92, curved).astype(np.float32)
+
+
+def _to_rgba(image: PIL.Image.Image) -> Image:
+    if image.mode.startswith("I"):  # Pillow clips 16-bit grey to 255 when converting
+        grey = np.asarray(image, dtype=np.float32)[..., None] / np.float32(65535)
+        return np.concatenate([grey, grey, grey, np.ones_like(grey)], axis=2)
+    return np.asarray(image.convert("RGBA"), dtype=np.float32) / np.float32(255)
+
+
+def _encoded(linear: Image) -> Image:
+    clipped = np.clip(linear, 0.0, 1.0)
+    return np.concatenate([linear_to_srgb(clipped[:, :3]), clipped[:, 3:]], axis=1)
+
+
+def _mix(first: Image, second: Image, share: Image) -> Image:
+    return first + (second - first) * share
+
+
+def _texel(index: NDArray[np.float64], size: int, wrap: str) -> NDArray[np.intp]:
+    # Wrapped as floats: a UV far outside [0, 1] would overflow an integer.
+    if wrap == "repeat":
+        index = np.remainder(index, size)
+    elif wrap == "mirror":
+        index = np.remainder(index, 2 * size)
+        index = np.minimum(index, 2 * size - 1 - index)
+    return np.clip(index, 0, size - 1).astype(np.intp)
