@@ -1,1 +1,7 @@
+"""Bytes: document <-> container. The normative text is `format_spec.md`."""
 
+from __future__ import annotations
+
+from nispcodec.format.document import SectionInfo, inspect, pack, unpack
+
+__all__ = ["SectionInfo", "inspect", "pack", "unpack"]

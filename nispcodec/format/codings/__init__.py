@@ -1,0 +1,1 @@
+"""Weight codings: how one tensor is stored. Each is one file with `encode` and `decode`."""

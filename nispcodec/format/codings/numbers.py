@@ -1,0 +1,34 @@
+"""A run of numbers: one byte for their kind, then little-endian values of that kind."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from nispcodec.format.codings.reader import Reader
+from nispcodec.format.constants import NUMBERS
+
+Kinds = dict[str, np.dtype[Any]]
+FLOATS: Kinds = {"float16": np.dtype("<f2"), "float32": np.dtype("<f4")}
+INTEGERS: Kinds = {"int8": np.dtype("i1"), "int16": np.dtype("<i2"), "int32": np.dtype("<i4")}
+
+
+def encode(values: NDArray[Any]) -> bytes:
+    """(n,) float32 or int32 -> bytes, in the smallest kind that loses nothing."""
+    kinds = FLOATS if values.dtype.kind == "f" else INTEGERS
+    for name, dtype in kinds.items():
+        with np.errstate(over="ignore"):
+            stored = values.astype(dtype)
+        if (stored.astype(values.dtype) == values).all():
+            return bytes((1 + NUMBERS.index(name),)) + bytes(stored.data)
+    raise AssertionError("the last kind holds every value")
+
+
+def decode(reader: Reader, count: int, symbols: bool) -> NDArray[Any]:
+    """Bytes -> (n,) float32, or int32 where `symbols`; only kinds of that sort are allowed."""
+    kinds = INTEGERS if symbols else FLOATS
+    name = reader.member("number kind", NUMBERS, tuple(kinds))
+    values = np.frombuffer(reader.take(count * kinds[name].itemsize, "values"), kinds[name])
+    return values.astype(np.int32 if symbols else np.float32)

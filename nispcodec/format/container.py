@@ -1,0 +1,158 @@
+"""The container: signature, version, section table, payloads. It knows nothing of their content."""
+
+from __future__ import annotations
+
+import re
+import struct
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+from zlib import crc32
+
+import zstandard
+
+from nispcodec.errors import FormatError
+from nispcodec.format.constants import (
+    CRITICAL,
+    ENTRY_SIZE,
+    HEADER_SIZE,
+    MAJOR,
+    MAX_FILE,
+    MAX_SECTIONS,
+    MAX_UNPACKED,
+    MINOR,
+    PACKINGS,
+    SIGNATURE,
+)
+
+_HEADER = struct.Struct("<8sBBHI")
+_ENTRY = struct.Struct("<4sHHIIII")
+_CODE = re.compile(rb"[A-Z0-9]{4}")
+_ZSTD_LEVEL = 19
+
+
+@dataclass(frozen=True)
+class Entry:
+    """One row of the section table, as on disk; `payload` is still packed."""
+
+    code: str
+    critical: bool
+    packing: str
+    offset: int
+    decoded_length: int
+    payload: memoryview = field(repr=False)
+
+    @property
+    def stored_length(self) -> int:
+        """Bytes of the payload in the file."""
+        return len(self.payload)
+
+
+def write_container(sections: Iterable[tuple[str, bool, bytes]]) -> bytes:
+    """(code, critical, content) of every section, in any order -> the bytes of the file."""
+    packed = [(code, critical, content, *_pack(content)) for code, critical, content in sections]
+    packed.sort(key=lambda row: row[0])
+    offset = HEADER_SIZE + ENTRY_SIZE * len(packed)
+    table = b""
+    for code, critical, content, packing, payload in packed:
+        numbers = (offset, len(payload), len(content), crc32(payload))
+        table += _ENTRY.pack(code.encode(), CRITICAL * critical, packing, *numbers)
+        offset += len(payload)
+    if offset > MAX_FILE:
+        raise FormatError("header", "file length", f"at most {MAX_FILE} bytes", offset)
+    start = _HEADER.pack(SIGNATURE, MAJOR, MINOR, len(packed), 0)[:12]
+    header = start + struct.pack("<I", crc32(start + table))
+    return b"".join([header, table, *(row[4] for row in packed)])
+
+
+def read_container(data: bytes) -> list[Entry]:
+    """Checks everything up to the checksums of the payloads; copies and unpacks nothing.
+
+    Raises `FormatError` naming the section ("header" for the part before the payloads).
+    """
+    count = _read_header(data)
+    end = HEADER_SIZE + ENTRY_SIZE * count
+    entries: list[Entry] = []
+    for row in range(count):
+        entries.append(_read_entry(data, row, end))
+        end += entries[-1].stored_length
+    if end != len(data):
+        raise FormatError("header", "file length", f"{end} bytes", len(data))
+    _check_order([entry.code for entry in entries])
+    unpacked = sum(entry.decoded_length for entry in entries if entry.packing == "zstd")
+    if unpacked > MAX_UNPACKED:
+        raise FormatError("header", "decoded length", f"{MAX_UNPACKED} in all", unpacked)
+    return entries
+
+
+def content(entry: Entry) -> bytes:
+    """The unpacked payload of one section; allocates at most its decoded length."""
+    if entry.packing == "raw":
+        return bytes(entry.payload)
+    try:
+        declared = zstandard.get_frame_parameters(entry.payload).content_size
+        if declared != entry.decoded_length:
+            raise FormatError(entry.code, "zstd content size", entry.decoded_length, declared)
+        unpacked = zstandard.ZstdDecompressor().decompress(
+            entry.payload, max_output_size=entry.decoded_length, allow_extra_data=False
+        )
+    except zstandard.ZstdError as error:
+        raise FormatError(entry.code, "payload", "one zstd frame", error) from error
+    if len(unpacked) != entry.decoded_length:
+        raise FormatError(entry.code, "decoded length", entry.decoded_length, len(unpacked))
+    return unpacked
+
+
+def _pack(content: bytes) -> tuple[int, bytes]:
+    squeezed = zstandard.ZstdCompressor(level=_ZSTD_LEVEL, write_content_size=True).compress(
+        content
+    )
+    if len(squeezed) < len(content):
+        return 1 + PACKINGS.index("zstd"), squeezed
+    return 1 + PACKINGS.index("raw"), content
+
+
+def _read_header(data: bytes) -> int:
+    if len(data) < HEADER_SIZE:
+        raise FormatError("header", "file length", f"at least {HEADER_SIZE} bytes", len(data))
+    signature, major, _minor, count, checksum = _HEADER.unpack_from(data)
+    if signature != SIGNATURE:
+        raise FormatError("header", "signature", SIGNATURE, signature)
+    if major != MAJOR:
+        raise FormatError("header", "major version", MAJOR, major)
+    if not 1 <= count <= MAX_SECTIONS:
+        raise FormatError("header", "section count", f"1 to {MAX_SECTIONS}", count)
+    end = HEADER_SIZE + ENTRY_SIZE * count
+    if len(data) < end:
+        raise FormatError("header", "file length", f"at least {end} bytes", len(data))
+    found = crc32(data[:12] + data[HEADER_SIZE:end])
+    if found != checksum:
+        raise FormatError("header", "checksum", f"{found:#010x}", f"{checksum:#010x}")
+    return int(count)
+
+
+def _read_entry(data: bytes, row: int, start: int) -> Entry:
+    raw_code, flags, packing, offset, stored, decoded, checksum = _ENTRY.unpack_from(
+        data, HEADER_SIZE + ENTRY_SIZE * row
+    )
+    if not _CODE.fullmatch(raw_code):
+        raise FormatError("header", f"code of section {row}", "four of A-Z and 0-9", raw_code)
+    code = raw_code.decode()
+    if flags & ~CRITICAL:
+        raise FormatError(code, "flags", f"0 or {CRITICAL}", flags)
+    if not 1 <= packing <= len(PACKINGS):
+        raise FormatError(code, "packing", f"1 to {len(PACKINGS)}", packing)
+    if offset != start:
+        raise FormatError(code, "offset", start, offset)
+    if stored > len(data) - start:
+        raise FormatError(code, "stored length", f"at most {len(data) - start}", stored)
+    if packing == 1 and decoded != stored:
+        raise FormatError(code, "decoded length", stored, decoded)
+    payload = memoryview(data)[start : start + stored]
+    if crc32(payload) != checksum:
+        raise FormatError(code, "checksum", f"{crc32(payload):#010x}", f"{checksum:#010x}")
+    return Entry(code, bool(flags & CRITICAL), PACKINGS[packing - 1], offset, decoded, payload)
+
+
+def _check_order(codes: list[str]) -> None:
+    if codes != sorted(set(codes)):
+        raise FormatError("header", "section order", sorted(set(codes)), codes)
