@@ -1,0 +1,40 @@
+"""Which parts of a surface can be seen from outside, by the winding number beside them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from nispcodec.metrics.surface import Surface, SurfacePoints
+
+PROBE = 2e-3
+
+
+@dataclass(frozen=True)
+class Sides:
+    """Of each point (n,) bool: hidden (inside on both sides) and sheet (inside on neither)."""
+
+    hidden: NDArray[np.bool_]
+    sheet: NDArray[np.bool_]
+
+    @property
+    def outer(self) -> NDArray[np.bool_]:
+        """(n,) bool: at least one side is outside."""
+        return ~self.hidden
+
+
+def sides_of(surface: Surface, points: SurfacePoints) -> Sides:
+    """Look PROBE off each point along the normal, both ways; outside is |winding number| <= 1/2.
+
+    Hidden walls, inside other bodies, cannot be held by a signed distance field.
+    """
+    import igl
+
+    offset = PROBE * surface.normals[points.faces]
+    probes = np.concatenate([points.positions + offset, points.positions - offset])
+    faces = np.asarray(surface.mesh.faces, dtype=np.int64)
+    inside = np.abs(igl.fast_winding_number(surface.positions, faces, probes)) > 0.5
+    above, below = np.split(inside, 2)
+    return Sides(hidden=above & below, sheet=~above & ~below)

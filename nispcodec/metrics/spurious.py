@@ -1,0 +1,44 @@
+"""Pieces of a decoded surface where the original has none."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from nispcodec.asset import TexturedMesh
+from nispcodec.metrics.surface import Surface, frame_of
+
+FAR = 0.02
+
+
+def spurious_components(decoded: TexturedMesh, original: TexturedMesh) -> dict[str, float]:
+    """Count and area of the decoded components that lie wholly further than FAR from the original.
+
+    Normalised frame of the original. A component is a set of faces connected through shared
+    positions; it is far when all its vertices are.
+    """
+    frame = frame_of(original)
+    surface = Surface.of(decoded, frame)
+    labels = components(decoded)
+    distances = np.linalg.norm(
+        Surface.of(original, frame).closest(surface.positions).positions - surface.positions, axis=1
+    )
+    nearest = np.full(labels.max(initial=-1) + 1, np.inf)
+    np.minimum.at(nearest, labels, distances[decoded.faces].min(axis=1))
+    far = nearest > FAR
+    return {"count": int(far.sum()), "area": float(surface.areas[far[labels]].sum())}
+
+
+def components(mesh: TexturedMesh) -> NDArray[np.int64]:
+    """(m,): the component of each face; vertices at equal positions count as one."""
+    from scipy.sparse import coo_array
+    from scipy.sparse.csgraph import connected_components
+
+    _, welded = np.unique(mesh.positions, axis=0, return_inverse=True)
+    faces = welded.reshape(-1)[mesh.faces]
+    rows, columns = faces[:, [0, 1]].ravel(), faces[:, [1, 2]].ravel()
+    size = len(mesh.positions)
+    links = coo_array((np.ones(len(rows), dtype=np.int8), (rows, columns)), shape=(size, size))
+    _, labels = connected_components(links, directed=False)
+    _, compact = np.unique(labels[faces[:, 0]], return_inverse=True)
+    return np.asarray(compact, dtype=np.int64)

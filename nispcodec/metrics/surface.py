@@ -1,0 +1,130 @@
+"""A mesh as a surface in the normalised frame: sampling it and finding closest points on it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from nispcodec.asset import TexturedMesh
+from nispcodec.document import Frame
+from nispcodec.errors import MeshError
+
+Array = NDArray[np.float64]
+Indices = NDArray[np.int64]
+
+
+def frame_of(mesh: TexturedMesh) -> Frame:
+    """The normalised frame of a mesh: bounding-box centre at 0, farthest used vertex at radius 1.
+
+    Raises MeshError for a mesh without faces or of a single point.
+    """
+    used = mesh.positions[np.unique(mesh.faces)]
+    if len(used) == 0:
+        raise MeshError(f"{mesh.name}: expected a surface, found no faces")
+    center = (used.min(axis=0) + used.max(axis=0)) / 2
+    radius = float(np.linalg.norm(used - center, axis=1).max())
+    if radius == 0:
+        raise MeshError(f"{mesh.name}: expected a surface, found a single point")
+    return Frame((float(center[0]), float(center[1]), float(center[2])), radius)
+
+
+@dataclass(frozen=True)
+class SurfacePoints:
+    """Points on a surface: faces (n,), barycentric weights (n, 3), positions (n, 3) normalised."""
+
+    faces: Indices
+    weights: Array
+    positions: Array
+
+    def __len__(self) -> int:
+        return len(self.faces)
+
+    def __getitem__(self, chosen: NDArray[np.bool_]) -> SurfacePoints:
+        return SurfacePoints(self.faces[chosen], self.weights[chosen], self.positions[chosen])
+
+    def __add__(self, other: SurfacePoints) -> SurfacePoints:
+        return SurfacePoints(
+            np.concatenate([self.faces, other.faces]),
+            np.concatenate([self.weights, other.weights]),
+            np.concatenate([self.positions, other.positions]),
+        )
+
+
+@dataclass(frozen=True)
+class Surface:
+    """A mesh with its positions (n, 3) in the normalised frame.
+
+    Raises MeshError, on first use, when no face has an area.
+    """
+
+    mesh: TexturedMesh
+    positions: Array
+
+    @classmethod
+    def of(cls, mesh: TexturedMesh, frame: Frame) -> Surface:
+        """The surface of a mesh given in the world frame."""
+        return cls(mesh, frame.to_normalised(mesh.positions))
+
+    @cached_property
+    def corners(self) -> Array:
+        """(m, 3, 3): the corners of every face."""
+        return self.positions[self.mesh.faces]
+
+    @cached_property
+    def areas(self) -> Array:
+        """(m,): the area of every face."""
+        lengths: Array = np.linalg.norm(self._crosses, axis=1)
+        return lengths / 2
+
+    @cached_property
+    def normals(self) -> Array:
+        """(m, 3): the unit normal of every face, 0 for a face without area."""
+        return self._crosses / np.maximum(2 * self.areas, np.finfo(np.float64).tiny)[:, None]
+
+    @cached_property
+    def diagonal(self) -> float:
+        """Length of the bounding box's diagonal."""
+        return float(np.linalg.norm(np.ptp(self.corners.reshape(-1, 3), axis=0)))
+
+    def sample(self, count: int, rng: np.random.Generator) -> SurfacePoints:
+        """`count` points spread uniformly over the area, in the order of the faces."""
+        cumulative = np.cumsum(self.areas[self._solid])
+        # Sorted, neighbours in the list are neighbours in space: trees answer twice as fast.
+        drawn = np.sort(rng.random(count)) * cumulative[-1]
+        faces = self._solid[np.searchsorted(cumulative, drawn)]
+        root, second = np.sqrt(rng.random(count)), rng.random(count)
+        weights = np.stack([1 - root, root * (1 - second), root * second], axis=1)
+        return SurfacePoints(faces, weights, self.interpolate(faces, weights))
+
+    def closest(self, points: Array) -> SurfacePoints:
+        """For each of (n, 3) points the closest point of the surface."""
+        import igl
+
+        faces = np.asarray(self.mesh.faces[self._solid], dtype=np.int64)
+        _, found, positions = igl.point_mesh_squared_distance(points, self.positions, faces)
+        a, b, c = np.moveaxis(self.corners[self._solid[found]], 1, 0)
+        weights = np.clip(igl.barycentric_coordinates(positions, a, b, c), 0, 1)
+        weights /= weights.sum(axis=1, keepdims=True)
+        return SurfacePoints(self._solid[found], weights, positions)
+
+    def interpolate(self, faces: Indices, weights: Array) -> Array:
+        """(n, 3) positions at barycentric weights (n, 3) of faces (n,)."""
+        positions: Array = np.einsum("nk,nkd->nd", weights, self.corners[faces])
+        return positions
+
+    @cached_property
+    def _crosses(self) -> Array:
+        a, b, c = np.moveaxis(self.corners, 1, 0)
+        crosses: Array = np.cross(b - a, c - a)
+        return crosses
+
+    @cached_property
+    def _solid(self) -> Indices:
+        # Faces without area have no normal and no barycentric coordinates.
+        solid = np.flatnonzero(self.areas > 0)
+        if len(solid) == 0:
+            raise MeshError(f"{self.mesh.name}: expected a surface, found no face with an area")
+        return solid

@@ -1,0 +1,38 @@
+"""How far texture coordinates and charts of paired points differ."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from nispcodec.metrics.geometry import Matches
+from nispcodec.metrics.surface import Array, Surface, SurfacePoints
+
+
+def uv_at(surface: Surface, points: SurfacePoints) -> Array:
+    """(n, 2): interpolated UVs, origin bottom-left; (0, 0) where the face has none."""
+    uvs: Array = np.einsum("nk,nkd->nd", points.weights, surface.mesh.corner_uvs[points.faces])
+    return uvs
+
+
+def uv_errors(original: Surface, decoded: Surface, matches: Matches) -> Array:
+    """(k,): Euclidean |delta uv| of the pairs whose original face has UVs."""
+    textured = original.mesh.has_uv[matches.original.faces]
+    first = uv_at(original, matches.original[textured])
+    second = uv_at(decoded, matches.decoded[textured])
+    errors: Array = np.linalg.norm(second - first, axis=1)
+    return errors
+
+
+def uv_summary(errors: Array) -> dict[str, float]:
+    """Mean, median and 99th percentile of (k,) UV errors."""
+    return {
+        "mean": float(errors.mean()),
+        "median": float(np.median(errors)),
+        "p99": float(np.percentile(errors, 99)),
+    }
+
+
+def chart_accuracy(labels: NDArray[np.integer], predicted: NDArray[np.integer]) -> float:
+    """Share of points (n,) whose predicted chart is the true one."""
+    return float((np.asarray(labels) == np.asarray(predicted)).mean())

@@ -1,0 +1,104 @@
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from nispcodec.errors import QueryError
+from nispcodec.metrics.parameterisation import distortion_summary, triangle_distortions
+from nispcodec.metrics.pictures import compare_pictures
+from nispcodec.metrics.psnr import CEILING, psnr
+from nispcodec.metrics.spurious import components, spurious_components
+from nispcodec.metrics.surface import Surface, frame_of
+from nispcodec.metrics.uv import chart_accuracy
+from tests.metrics.shapes import joined, moved, plane, sphere, textured
+
+
+def surface_of(mesh):
+    return Surface.of(mesh, frame_of(mesh))
+
+
+def test_frame_puts_the_box_at_zero_and_the_farthest_vertex_at_one() -> None:
+    mesh = moved(sphere(3.0), (5, -2, 1))
+    positions = surface_of(mesh).positions
+    np.testing.assert_allclose(positions.min(axis=0) + positions.max(axis=0), 0, atol=1e-12)
+    assert np.linalg.norm(positions, axis=1).max() == pytest.approx(1)
+
+
+def test_samples_lie_on_the_surface_and_spread_by_area() -> None:
+    surface = surface_of(joined(sphere(1.0), moved(sphere(0.5), (3, 0, 0))))
+    points = surface.sample(20_000, np.random.default_rng(0))
+    on_small = (points.faces >= len(surface.mesh.faces) // 2).mean()
+    assert on_small == pytest.approx(0.2, abs=0.01)
+    back = surface.closest(points.positions)
+    np.testing.assert_allclose(back.positions, points.positions, atol=1e-9)
+
+
+def test_closest_point_and_its_weights_agree() -> None:
+    surface = surface_of(sphere())
+    points = np.random.default_rng(0).normal(size=(500, 3))
+    found = surface.closest(points)
+    np.testing.assert_allclose(
+        surface.interpolate(found.faces, found.weights), found.positions, atol=1e-9
+    )
+    assert (found.weights >= 0).all()
+
+
+def test_distortion_of_a_known_map() -> None:
+    # Two units wide and half a unit high onto the unit square: sigmas 1/2 and 2.
+    positions = np.array([[0, 0, 0], [2, 0, 0], [2, 0.5, 0], [0, 0.5, 0]], dtype=float)
+    uvs = np.array([[0, 0], [1, 0], [1, 1], [0, 1]], dtype=float)
+    mesh = textured(positions, np.array([[0, 1, 2], [0, 2, 3]]), uvs, "sheet")
+    surface = Surface(mesh, mesh.positions)
+    np.testing.assert_allclose(triangle_distortions(surface), 2)
+    assert distortion_summary(surface) == pytest.approx({"mean": 2, "max": 2, "std": 0})
+
+
+def test_mirrored_uv_has_the_same_distortion() -> None:
+    mesh = sphere()
+    mirrored = textured(mesh.positions, mesh.faces, mesh.uvs * [-1, 1], "mirrored")
+    np.testing.assert_allclose(
+        triangle_distortions(surface_of(mirrored)), triangle_distortions(surface_of(mesh))
+    )
+
+
+def test_components_weld_equal_positions() -> None:
+    mesh = plane(cells=2)
+    soup = textured(mesh.corners.reshape(-1, 3), np.arange(24).reshape(8, 3), np.zeros((24, 2)), "")
+    assert components(soup).max() == 0
+    assert components(joined(mesh, moved(mesh, (5, 0, 0)))).max() == 1
+
+
+def test_spurious_component_is_found_and_measured() -> None:
+    body, blob = sphere(), moved(sphere(0.05), (0.9, 0.9, 0.9))
+    assert spurious_components(body, body) == {"count": 0, "area": 0}
+    found = spurious_components(joined(body, blob), body)
+    assert found["count"] == 1
+    assert found["area"] == pytest.approx(4 * np.pi * 0.05**2, rel=0.02)
+
+
+def test_component_that_touches_the_surface_is_not_spurious() -> None:
+    bump = moved(sphere(0.05), (1, 0, 0))
+    assert spurious_components(joined(sphere(), bump), sphere())["count"] == 0
+
+
+def test_chart_accuracy_counts_matches() -> None:
+    assert chart_accuracy(np.array([0, 1, 2, 2]), np.array([0, 1, 1, 2])) == 0.75
+
+
+def test_psnr_of_known_error_and_of_none() -> None:
+    assert psnr(0.01, 1.0) == pytest.approx(20)
+    assert psnr(0.0, 1.0) == CEILING
+
+
+def test_pictures() -> None:
+    picture = np.random.default_rng(0).random((32, 32, 3)).astype(np.float32)
+    same = compare_pictures(picture, picture)
+    assert same == pytest.approx({"psnr": CEILING, "ssim": 1})
+    darker = compare_pictures(picture, picture * np.float32(0.5))
+    assert darker["psnr"] < 15
+    assert darker["ssim"] < 0.9
+
+
+def test_pictures_of_different_shapes_are_refused() -> None:
+    with pytest.raises(QueryError, match="shape"):
+        compare_pictures(np.zeros((8, 8, 3), np.float32), np.zeros((8, 9, 3), np.float32))
