@@ -1,0 +1,87 @@
+"""Image files: recognised and checked, never changed unless no viewer could read them."""
+
+from __future__ import annotations
+
+import io
+import re
+import struct
+import warnings
+from pathlib import PurePath
+
+import PIL.Image
+
+from nispcodec.asset import Texture
+from nispcodec.errors import MeshError
+
+# The formats that stay as they are, by Pillow's name.
+_KEPT = {
+    "PNG": ("image/png", ".png"),
+    "JPEG": ("image/jpeg", ".jpg"),
+    "MPO": ("image/jpeg", ".jpg"),
+    "WEBP": ("image/webp", ".webp"),
+    "AVIF": ("image/avif", ".avif"),
+}
+_CONVERTED = ("TGA", "BMP", "DIB", "TIFF", "GIF", "DDS", "JPEG2000", "PPM", "PCX", "SGI", "ICO")
+# What Pillow's readers raise for malformed files.
+_BROKEN = (OSError, ValueError, SyntaxError, EOFError, struct.error, ArithmeticError, LookupError)
+
+
+class TextureShelf:
+    """The distinct textures of one asset, gathered while its materials are read."""
+
+    def __init__(self, warnings: list[str]) -> None:
+        self.textures: list[Texture] = []
+        self._warnings = warnings
+        self._places: dict[bytes, int] = {}
+
+    def add(self, name: str, data: bytes, place: str) -> int:
+        """The index of the texture with these bytes; `place` names the file in messages."""
+        if data not in self._places:
+            texture = self._checked(name, data, place)
+            self._places[data] = len(self.textures)
+            self.textures.append(texture)
+        return self._places[data]
+
+    def _checked(self, name: str, data: bytes, place: str) -> Texture:
+        image = _decoded(data, place)
+        found = str(image.format)
+        stem = _stem(name)
+        if found in _KEPT:
+            mime, suffix = _KEPT[found]
+            return Texture(self._free_name(stem, suffix), data, mime)
+        self._warnings.append(f"{place}: a {found} image, converted to PNG")
+        return Texture(self._free_name(stem, ".png"), _as_png(image), "image/png")
+
+    def _free_name(self, stem: str, suffix: str) -> str:
+        taken = {texture.name.casefold() for texture in self.textures}
+        names = (f"{stem}{'' if count == 1 else f'_{count}'}{suffix}" for count in range(1, 10**9))
+        return next(name for name in names if name.casefold() not in taken)
+
+
+def _decoded(data: bytes, place: str) -> PIL.Image.Image:
+    """Decode every pixel, so that a damaged image is found now and not by the viewer."""
+    try:
+        with warnings.catch_warnings():
+            # Pillow's guard against decompression bombs only warns below twice its limit.
+            warnings.simplefilter("ignore")
+            warnings.simplefilter("error", PIL.Image.DecompressionBombWarning)
+            PIL.Image.open(io.BytesIO(data), formats=[*_KEPT, *_CONVERTED]).verify()
+            image = PIL.Image.open(io.BytesIO(data), formats=[*_KEPT, *_CONVERTED])
+            image.load()
+            return image
+    except (*_BROKEN, PIL.Image.DecompressionBombWarning, PIL.Image.DecompressionBombError) as why:
+        reason = str(why).split("<_io")[0]
+        raise MeshError(f"{place}: expected an image that can be decoded, found: {reason}") from why
+
+
+def _as_png(image: PIL.Image.Image) -> bytes:
+    buffer = io.BytesIO()
+    mode = image.mode if image.mode in ("1", "L", "LA", "RGB", "RGBA", "P", "I;16") else "RGBA"
+    image.convert(mode).save(buffer, "PNG")
+    return buffer.getvalue()
+
+
+def _stem(name: str) -> str:
+    """A bare file name that every file system takes."""
+    stem = PurePath(re.split(r"[\\/]", name)[-1]).stem
+    return re.sub(r'[\x00-\x1f<>:"|?*]', "_", stem).strip(" .")[:100] or "texture"

@@ -1,0 +1,235 @@
+"""Wavefront MTL: materials and the images that they use."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+from nispcodec.asset import Material, Texture, TextureMap
+from nispcodec.errors import MeshError
+from nispcodec.mesh import wavefront
+from nispcodec.mesh.folder import Folder
+from nispcodec.mesh.images import TextureShelf
+
+# Keyword of an image statement -> slot; of two for one slot the first in this list wins.
+SLOT_OF = {
+    "map_kd": "base_color",
+    "norm": "normal",
+    "map_bump": "normal",
+    "bump": "normal",
+    "map_ke": "emissive",
+}
+# Options of image statements -> the largest number of values they take.
+_OPTIONS = {
+    "-blendu": 1,
+    "-blendv": 1,
+    "-bm": 1,
+    "-boost": 1,
+    "-cc": 1,
+    "-clamp": 1,
+    "-imfchan": 1,
+    "-mm": 2,
+    "-o": 3,
+    "-s": 3,
+    "-t": 3,
+    "-texres": 1,
+    "-type": 1,
+}
+_MOVING = {"-o", "-s", "-t"}
+_CHANGING = {"-boost", "-cc", "-imfchan", "-mm"}
+
+
+@dataclass(frozen=True)
+class MapStatement:
+    """One image statement: options by name, the file as written, its place for messages."""
+
+    reference: str
+    options: dict[str, list[str]]
+    place: str
+
+
+@dataclass
+class MtlMaterial:
+    """One material as its statements stand in the file, keywords in lower case."""
+
+    name: str
+    values: dict[str, list[float]] = field(default_factory=dict)
+    maps: dict[str, MapStatement] = field(default_factory=dict)
+
+
+def parse_mtl(data: bytes, name: str) -> dict[str, MtlMaterial]:
+    """The materials of an MTL file by name; MeshError names `name` and the line."""
+    materials: dict[str, MtlMaterial] = {}
+    current = MtlMaterial("")
+    for number, line in wavefront.logical_lines(data):
+        keyword = wavefront.text(line.split(None, 1)[0]).lower()
+        place = f"{name}:{number}"
+        if keyword == "newmtl":
+            current = MtlMaterial(wavefront.rest(line))
+            materials[current.name] = current
+        elif keyword in _VALUES:
+            current.values[keyword] = _values(line, place)
+        elif keyword in SLOT_OF or keyword.startswith("map_") or keyword in _OTHER_MAPS:
+            current.maps[keyword] = _map_statement(line, place)
+    return materials
+
+
+_VALUES = ("kd", "ke", "d", "tr", "pr", "pm")
+_OTHER_MAPS = ("disp", "decal", "refl")
+
+
+def _values(line: bytes, place: str) -> list[float]:
+    words = [word for word in line.split()[1:] if word != b"-halo"]
+    if words and words[0] in (b"spectral", b"xyz"):
+        return []
+    return wavefront.numbers(words, 1, lambda: place)
+
+
+def _map_statement(line: bytes, place: str) -> MapStatement:
+    words = [wavefront.text(word) for word in line.split()]
+    options: dict[str, list[str]] = {}
+    at = 1
+    while at < len(words) and words[at].lower() in _OPTIONS:
+        option = words[at].lower()
+        limit = at + 1 + _OPTIONS[option]
+        at += 1
+        start = at
+        while at < limit and at < len(words) and (at == start or _is_number(words[at])):
+            at += 1
+        options[option] = words[start:at]
+    return MapStatement(wavefront.rest(line, at), options, place)
+
+
+def _is_number(word: str) -> bool:
+    try:
+        float(word)
+    except ValueError:
+        return False
+    return True
+
+
+class MaterialReader:
+    """Turns material names into materials with the MTL files and images of one folder."""
+
+    def __init__(self, folder: Folder, warnings: list[str]) -> None:
+        self._folder = folder
+        self._warnings = warnings
+        self._shelf = TextureShelf(warnings)
+        self._known: dict[str, MtlMaterial] = {}
+        self._libraries = 0
+
+    @property
+    def textures(self) -> Sequence[Texture]:
+        """The images that the materials made so far use, without doubles."""
+        return self._shelf.textures
+
+    def open_library(self, reference: str, place: str) -> None:
+        """Read the MTL file of an `mtllib` statement, which may name several."""
+        whole = self._folder.find(reference)
+        names = [reference] if whole else reference.split()
+        for name in names:
+            path = self._folder.find(name)
+            if path is None:
+                self._warnings.append(f"{place}: material file {name!r} not found")
+                continue
+            self._libraries += 1
+            self._known.update(parse_mtl(self._folder.read(path), path.name))
+
+    def materials(self, names: Sequence[str]) -> tuple[Material, ...]:
+        """One material a name, in order; at least one."""
+        return tuple(self._material(name) for name in names) or (Material(),)
+
+    def _material(self, name: str) -> Material:
+        if name not in self._known:
+            if name and self._libraries:
+                self._warnings.append(f"material {name!r} is in no material file")
+            return Material(name=name or "material")
+        return self._finished(self._known[name])
+
+    def _finished(self, found: MtlMaterial) -> Material:
+        alpha = _alpha(found.values)
+        maps = self._maps(found)
+        red, green, blue = _color(found.values.get("kd"), (1.0, 1.0, 1.0))
+        if "base_color" in maps and (red, green, blue) == (0.0, 0.0, 0.0):
+            # Exporters that mean the image alone write black here.
+            self._warnings.append(f"material {found.name!r}: black Kd under map_Kd taken as white")
+            red, green, blue = 1.0, 1.0, 1.0
+        glow = _color(found.values.get("ke"), (0.0, 0.0, 0.0))
+        if "emissive" in maps and glow == (0.0, 0.0, 0.0):
+            glow = (1.0, 1.0, 1.0)
+        return Material(
+            name=found.name,
+            base_color=(red, green, blue, alpha),
+            metallic=_unit(found.values.get("pm", [0.0])[0]),
+            roughness=_unit(found.values.get("pr", [1.0])[0]),
+            emissive=glow,
+            alpha_mode="blend" if alpha < 1 else "opaque",
+            maps=maps,
+        )
+
+    def _maps(self, found: MtlMaterial) -> dict[str, TextureMap]:
+        maps: dict[str, TextureMap] = {}
+        ordered = [key for key in SLOT_OF if key in found.maps]
+        for keyword in ordered:
+            slot = SLOT_OF[keyword]
+            made = None if slot in maps else self._map(found.maps[keyword])
+            if made is not None:
+                maps[slot] = made
+        self._warn_of_others(found)
+        return maps
+
+    def _map(self, statement: MapStatement) -> TextureMap | None:
+        path = self._folder.find(statement.reference)
+        if path is None:
+            self._warnings.append(f"{statement.place}: image {statement.reference!r} not found")
+            return None
+        self._warn_of_options(statement)
+        texture = self._shelf.add(path.name, self._folder.read(path), str(path))
+        clamped = statement.options.get("-clamp", [""])[0].lower() == "on"
+        wrap = "clamp" if clamped else "repeat"
+        return TextureMap(texture, (wrap, wrap), strength=_strength(statement))
+
+    def _warn_of_options(self, statement: MapStatement) -> None:
+        for option in statement.options:
+            if option in _MOVING:
+                effect = "texture coordinates are kept as they are"
+            elif option in _CHANGING:
+                effect = "the image is kept as it is"
+            else:
+                continue
+            self._warnings.append(f"{statement.place}: option {option} is not applied: {effect}")
+
+    def _warn_of_others(self, found: MtlMaterial) -> None:
+        base = found.maps["map_kd"].reference if "map_kd" in found.maps else None
+        for keyword, statement in found.maps.items():
+            # Exporters often repeat the base colour as the ambient one.
+            repeated = keyword == "map_ka" and statement.reference == base
+            if keyword not in SLOT_OF and not repeated:
+                self._warnings.append(
+                    f"{statement.place}: {keyword} {statement.reference!r} is not supported"
+                )
+
+
+def _alpha(values: dict[str, list[float]]) -> float:
+    transparency = values.get("tr", [0.0])[0]
+    return _unit(values.get("d", [1.0 - transparency])[0])
+
+
+def _color(
+    values: list[float] | None, default: tuple[float, float, float]
+) -> tuple[float, float, float]:
+    if not values:
+        return default
+    red, green, blue = values[:3] if len(values) > 2 else (values[0],) * 3
+    return _unit(red), _unit(green), _unit(blue)
+
+
+def _unit(value: float) -> float:
+    return min(max(value, 0.0), 1.0)
+
+
+def _strength(statement: MapStatement) -> float:
+    values = statement.options.get("-bm", ["1"])
+    if not values or not _is_number(values[0]):
+        raise MeshError(f"{statement.place}: expected a number after -bm, found {values!r}")
+    return float(values[0])

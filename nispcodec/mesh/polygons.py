@@ -1,0 +1,121 @@
+"""Triangulate polygons: fans where they are strictly convex, ear clipping elsewhere."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+Points = NDArray[np.float64]
+Indices = NDArray[np.int64]
+
+# Ear clipping takes quadratic time or worse; larger polygons than any modeller draws become fans.
+MAX_CLIPPED = 4096
+
+
+def triangulate(points: Points, sizes: Indices) -> tuple[Indices, Indices]:
+    """Cut polygons into triangles that keep their orientation.
+
+    points (c, 3): the corners of all polygons, one polygon after the other; sizes (p,): corners of
+    each, at least 3. Returns (t, 3) indices into the corners and (t,) the polygon of each triangle,
+    ascending. Concave polygons are cut in the plane of their Newell normal.
+    """
+    starts = np.cumsum(sizes) - sizes
+    triangles, owners = [], []
+    for size in np.unique(sizes):
+        polygons = np.flatnonzero(sizes == size)
+        corners = starts[polygons, None] + np.arange(size)
+        cuts = _cut_all(points[corners])
+        triangles.append(np.take_along_axis(corners[:, None, :], cuts, axis=2).reshape(-1, 3))
+        owners.append(np.repeat(polygons, size - 2))
+    if not triangles:
+        return np.zeros((0, 3), dtype=np.int64), np.zeros(0, dtype=np.int64)
+    owner = np.concatenate(owners)
+    order = np.argsort(owner, kind="stable")
+    return np.concatenate(triangles)[order], owner[order]
+
+
+def _cut_all(polygons: Points) -> Indices:
+    """(g, n, 3) polygons of one size -> (g, n - 2, 3) corners of each one's triangles."""
+    count, size, _ = polygons.shape
+    steps = np.arange(1, size - 1)
+    fan = np.stack([np.zeros_like(steps), steps, steps + 1], axis=1)
+    cuts = np.tile(fan, (count, 1, 1))
+    if 3 < size <= MAX_CLIPPED:
+        for index in np.flatnonzero(~_strictly_convex(polygons)):
+            cuts[index] = _clip_ears(_flattened(polygons[index]))
+    return cuts
+
+
+def _newell(polygons: Points) -> Points:
+    """(..., n, 3) -> (..., 3): normals whose length is twice the area."""
+    centred = polygons - polygons[..., :1, :]
+    normal: Points = np.cross(centred, np.roll(centred, -1, axis=-2)).sum(axis=-2)
+    return normal
+
+
+def _strictly_convex(polygons: Points) -> NDArray[np.bool_]:
+    """Whether all corners turn the same way, and once around in all."""
+    edges = np.roll(polygons, -1, axis=1) - polygons
+    turns = np.cross(np.roll(edges, 1, axis=1), edges)
+    normal = _newell(polygons)
+    sine = np.einsum("gnk,gk->gn", turns, normal)
+    cosine = np.einsum("gnk,gnk->gn", np.roll(edges, 1, axis=1), edges)
+    length = np.linalg.norm(normal, axis=1, keepdims=True)
+    turned = np.arctan2(sine, cosine * length).sum(axis=1)
+    floor = 1e-9 * length * (edges**2).sum(axis=2).max(axis=1, keepdims=True)
+    convex: NDArray[np.bool_] = (sine > floor).all(axis=1) & (turned < 3 * np.pi)
+    return convex
+
+
+def _flattened(polygon: Points) -> Points:
+    """(n, 3) -> (n, 2): seen against the normal, so that it runs counter-clockwise."""
+    normal = _newell(polygon)
+    drop = int(np.abs(normal).argmax())
+    axes = [(1, 2), (2, 0), (0, 1)][drop]
+    flat = polygon[:, axes] - polygon[0, axes]
+    return flat if normal[drop] >= 0 else flat * (-1.0, 1.0)
+
+
+def _clip_ears(flat: Points) -> Indices:
+    """Cut ears off a counter-clockwise polygon (n, 2) until a triangle is left: (n - 2, 3)."""
+    left = list(range(len(flat)))
+    ears = []
+    while len(left) > 3:
+        at = _find_ear(flat, left)
+        ears.append([left[at - 1], left[at], left[(at + 1) % len(left)]])
+        del left[at]
+    return np.array([*ears, left], dtype=np.int64)
+
+
+def _find_ear(flat: Points, left: list[int]) -> int:
+    """The place in `left` of a corner whose triangle is positive and holds no other corner.
+
+    A polygon that crosses itself may have none; then its most positive corner goes.
+    """
+    corners = flat[left]
+    before, after = np.roll(corners, 1, axis=0), np.roll(corners, -1, axis=0)
+    areas = _twice_area(before, corners, after)
+    reflex = corners[areas <= 0]
+    for at in np.argsort(-areas, kind="stable"):
+        if areas[at] <= 0:
+            break
+        if not _holds_any(before[at], corners[at], after[at], reflex):
+            return int(at)
+    return int(areas.argmax())
+
+
+def _holds_any(a: Points, b: Points, c: Points, points: Points) -> bool:
+    """Whether a point other than the corners lies in the triangle or on its border."""
+    inside = (
+        (_twice_area(a, b, points) >= 0)
+        & (_twice_area(b, c, points) >= 0)
+        & (_twice_area(c, a, points) >= 0)
+    )
+    corner = (points[:, None] == np.stack([a, b, c])).all(axis=2).any(axis=1)
+    return bool((inside & ~corner).any())
+
+
+def _twice_area(a: Points, b: Points, c: Points) -> Points:
+    u, v = b - a, c - a
+    area: Points = u[..., 0] * v[..., 1] - u[..., 1] * v[..., 0]
+    return area
