@@ -1,0 +1,69 @@
+"""Which pieces of an extracted surface are real, and which are noise of the fitted field.
+
+A fitted SDF may cross zero where there is no surface, far from its training samples. Such a
+crossing gives itself away: it lies outside the normalised frame's unit ball, or it is tiny and the
+field around it is no distance field.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
+
+from nispcodec.decode.evaluate import gradient
+from nispcodec.decode.extract import Surface
+from nispcodec.network import Network
+
+OUTSIDE = 1.01
+TINY_FACES = 64
+TINY_SHARE = 2e-3
+SLOPES = (0.5, 1.5)
+
+Integers = NDArray[np.int32]
+
+
+@dataclass(frozen=True)
+class ExtractionReport:
+    """What the extraction found: counts of connected components and of the dropped ones' faces."""
+
+    resolution: int
+    kept: int
+    dropped: int
+    dropped_faces: int
+
+
+def components(surface: Surface) -> tuple[int, Integers]:
+    """How many connected components, and the component of each vertex (n,)."""
+    a, b = surface.faces[:, :2].T, surface.faces[:, 1:].T
+    rows, columns = np.concatenate([a[0], a[1]]), np.concatenate([b[0], b[1]])
+    size = len(surface.positions)
+    graph = coo_array((np.ones(len(rows), np.bool_), (rows, columns)), shape=(size, size))
+    count, labels = connected_components(graph, directed=False)
+    return count, labels.astype(np.int32)
+
+
+def spurious(network: Network, surface: Surface) -> tuple[NDArray[np.bool_], Integers]:
+    """Which components are noise (c,) bool, and the component of each vertex (n,)."""
+    count, labels = components(surface)
+    vertices = np.bincount(labels, minlength=count)
+    faces = np.bincount(labels[surface.faces[:, 0]], minlength=count)
+    slopes = np.linalg.norm(gradient(network, surface.positions)[1], axis=1)
+    slope = np.bincount(labels, slopes, minlength=count) / vertices
+    distance = np.linalg.norm(surface.positions, axis=1)
+    nearest = np.full(count, np.inf)
+    np.minimum.at(nearest, labels, distance)
+    tiny = faces < max(TINY_FACES, TINY_SHARE * len(surface.faces))
+    unconfirmed = (slope < SLOPES[0]) | (slope > SLOPES[1])
+    return (nearest > OUTSIDE) | (tiny & unconfirmed), labels
+
+
+def without(surface: Surface, unwanted: NDArray[np.bool_], labels: Integers) -> Surface:
+    """The surface without the components marked in `unwanted` (c,) bool."""
+    keep = ~unwanted[labels]
+    renumbered = (np.cumsum(keep) - 1).astype(np.int32)
+    faces = surface.faces[keep[surface.faces[:, 0]]]
+    return Surface(surface.positions[keep], renumbered[faces], surface.cell)

@@ -1,0 +1,180 @@
+"""From the SDF network to a triangle mesh, with work that grows with the surface.
+
+Blocks of the cube are kept, coarse to fine, while the field says that the surface may pass through
+them; the field is then sampled on the grid points of the kept blocks only, polygonised, and the
+vertices are moved onto the zero set.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from nispcodec.decode.evaluate import evaluate, gradient
+from nispcodec.decode.marching import CORNERS, EDGES, polygonise
+from nispcodec.network import Network
+
+LIMIT = 1.02
+BLOCK = 4
+ROOT = 16
+NEWTON_STEPS = 3
+
+Ids = NDArray[np.int64]
+Floats = NDArray[np.float32]
+
+
+@dataclass(frozen=True)
+class Surface:
+    """positions (n, 3) float32, normalised frame; faces (m, 3) int32; cell: the grid's spacing."""
+
+    positions: Floats
+    faces: NDArray[np.int32]
+    cell: float
+
+
+def extract(network: Network, resolution: int) -> Surface:
+    """The zero set of the SDF network in the cube [-1.02, 1.02]^3 of the normalised frame.
+
+    `resolution` is the number of cells along an edge of the cube.
+    """
+    cell = 2 * LIMIT / resolution
+    blocks = _surface_blocks(network, resolution, cell)
+    values = _block_values(network, blocks, resolution, cell)
+    edges, ends, faces = _polygons(blocks, values)
+    positions = _on_zero_set(network, _crossings(edges, ends, cell), cell)
+    return Surface(positions, faces, cell)
+
+
+def _surface_blocks(network: Network, resolution: int, cell: float) -> Ids:
+    """Integer coordinates (b, 3) of the blocks of BLOCK^3 cells that may hold surface."""
+    across = -(-resolution // BLOCK)
+    levels = max(0, int(np.ceil(np.log2(across / ROOT))))
+    count = -(-across // 2**levels)
+    blocks = _lattice(count)
+    bound = None
+    for level in range(levels, -1, -1):
+        size = cell * BLOCK * 2**level
+        centres = ((blocks + 0.5) * size - LIMIT).astype(np.float32)
+        if bound is None:
+            bound = _steepness(network, centres)
+        distance = np.abs(evaluate(network, centres)[:, 0])
+        blocks = blocks[distance <= bound * size * np.sqrt(3) / 2]
+        if level:
+            blocks = (2 * blocks[:, None] + CORNERS).reshape(-1, 3)
+            blocks = blocks[(blocks < across).all(axis=1)]
+    return blocks
+
+
+def _lattice(count: int) -> Ids:
+    """All integer points of a cube, (count^3, 3), the last axis fastest."""
+    return np.indices((count,) * 3).reshape(3, -1).T.astype(np.int64)
+
+
+def _steepness(network: Network, points: Floats) -> float:
+    """A bound on how fast the field changes: an SDF has slope 1, a fitted one only nearly."""
+    slopes = np.linalg.norm(gradient(network, points)[1], axis=1)
+    return float(1.25 * max(1.0, np.percentile(slopes, 99)))
+
+
+def _block_values(network: Network, blocks: Ids, resolution: int, cell: float) -> Floats:
+    """The field at each block's (BLOCK + 1)^3 grid points: (b, 5, 5, 5) float32.
+
+    A point shared by several blocks has one value, bit for bit, or the surface would crack.
+    """
+    across = -(-resolution // BLOCK) + 1
+    numbers = np.full((across,) * 3, -1, np.int32)
+    numbers[tuple(blocks.T)] = np.arange(len(blocks))
+    inner = _lattice(BLOCK)
+    own = _field(network, (blocks[:, None] * BLOCK + inner).reshape(-1, 3), cell)
+    own = own.reshape(-1, BLOCK**3)
+    outer = _lattice(BLOCK + 1)
+    values = np.empty((len(blocks), len(outer)), np.float32)
+    absent: list[tuple[NDArray[np.bool_], int]] = []
+    for column, offset in enumerate(outer):
+        owner = numbers[tuple((blocks + offset // BLOCK).T)]
+        values[:, column] = own[owner, np.ravel_multi_index(tuple(offset % BLOCK), (BLOCK,) * 3)]
+        if (owner < 0).any():
+            absent.append((owner < 0, column))
+    _fill_absent(network, blocks, outer, absent, values, cell)
+    return values.reshape(-1, *(BLOCK + 1,) * 3)
+
+
+def _fill_absent(
+    network: Network,
+    blocks: Ids,
+    outer: Ids,
+    absent: list[tuple[NDArray[np.bool_], int]],
+    values: Floats,
+    cell: float,
+) -> None:
+    if not absent:
+        return
+    points = np.vstack([blocks[rows] * BLOCK + outer[column] for rows, column in absent])
+    ids, inverse = np.unique(_key(points), return_inverse=True)
+    filled = _field(network, _unkey(ids), cell)[inverse]
+    start = 0
+    for rows, column in absent:
+        stop = start + int(rows.sum())
+        values[rows, column] = filled[start:stop]
+        start = stop
+
+
+def _field(network: Network, grid: Ids, cell: float) -> Floats:
+    return evaluate(network, (grid * cell - LIMIT).astype(np.float32))[:, 0]
+
+
+def _key(grid: Ids) -> Ids:
+    return grid[..., 0] << 40 | grid[..., 1] << 20 | grid[..., 2]
+
+
+def _unkey(keys: Ids) -> Ids:
+    mask = (1 << 20) - 1
+    return np.stack([keys >> 40, keys >> 20 & mask, keys & mask], axis=-1)
+
+
+def _polygons(blocks: Ids, values: Floats) -> tuple[Ids, Floats, NDArray[np.int32]]:
+    """Crossed grid edges (n, 4: low point, axis), the field at their ends (n, 2), faces (m, 3)."""
+    inside = values < 0
+    cases = np.zeros((len(blocks), *(BLOCK,) * 3), np.uint8)
+    for i, corner in enumerate(CORNERS):
+        window = (slice(None), *(slice(c, c + BLOCK) for c in corner))
+        cases |= inside[window].astype(np.uint8) << i
+    active = np.argwhere((cases > 0) & (cases < 255))
+    cells, triangles = polygonise(cases[tuple(active.T)])
+    lows = np.array([low for low, _ in EDGES])[triangles]
+    axes = np.array([axis for _, axis in EDGES])[triangles]
+    grid = (blocks[active[:, 0]] * BLOCK + active[:, 1:])[cells][:, None] + CORNERS[lows]
+    keys, first, faces = np.unique(_key(grid) * 3 + axes, return_index=True, return_inverse=True)
+    where = (active[:, :1][cells], (active[:, 1:][cells][:, None] + CORNERS[lows]))
+    low = where[1].reshape(-1, 3)[first]
+    block = np.repeat(where[0], 3)[first]
+    axis = axes.ravel()[first]
+    high = low + np.eye(3, dtype=np.int64)[axis]
+    ends = np.stack([values[block, *low.T], values[block, *high.T]], axis=1)
+    edges = np.column_stack([_unkey(keys // 3), axis])
+    return edges, ends, faces.reshape(-1, 3).astype(np.int32)
+
+
+def _crossings(edges: Ids, ends: Floats, cell: float) -> Floats:
+    fraction = ends[:, 0] / (ends[:, 0] - ends[:, 1])
+    grid = edges[:, :3].astype(np.float64)
+    grid[np.arange(len(grid)), edges[:, 3]] += fraction
+    return (grid * cell - LIMIT).astype(np.float32)
+
+
+def _on_zero_set(network: Network, positions: Floats, cell: float) -> Floats:
+    """Newton steps along the gradient, kept within half a cell and only while they help."""
+    start = positions
+    values, slopes = gradient(network, positions)
+    for _ in range(NEWTON_STEPS):
+        steepness = np.maximum((slopes * slopes).sum(axis=1, keepdims=True), 1e-6)
+        moved = positions - values[:, None] * slopes / steepness
+        moved = start + np.clip(moved - start, -cell / 2, cell / 2)
+        moved_values, moved_slopes = gradient(network, moved)
+        better = np.abs(moved_values) < np.abs(values)
+        positions = np.where(better[:, None], moved, positions)
+        values = np.where(better, moved_values, values)
+        slopes = np.where(better[:, None], moved_slopes, slopes)
+    return positions

@@ -1,0 +1,76 @@
+"""From a document to a textured mesh: the decoder's recipe, one line a stage."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from nispcodec.asset import IndexArray, TexturedMesh
+from nispcodec.decode.components import ExtractionReport, spurious, without
+from nispcodec.decode.evaluate import evaluate
+from nispcodec.decode.extract import LIMIT, Surface, extract
+from nispcodec.decode.face_charts import face_charts
+from nispcodec.document import Document
+
+DEFAULT_RESOLUTION = 256
+MAX_RESOLUTION = 2048
+
+Floats = NDArray[np.float32]
+
+
+def textured_mesh(
+    document: Document, resolution: int | None = None, keep_spurious: bool = False
+) -> tuple[TexturedMesh, ExtractionReport]:
+    """The document's surface in the world frame, textured, and a report on its extraction."""
+    resolution = resolution or default_resolution(document)
+    surface = extract(document.sdf, resolution)
+    unwanted, labels = spurious(document.sdf, surface)
+    cleaned = surface if keep_spurious else without(surface, unwanted, labels)
+    report = ExtractionReport(
+        resolution=resolution,
+        kept=len(unwanted) - (0 if keep_spurious else int(unwanted.sum())),
+        dropped=0 if keep_spurious else int(unwanted.sum()),
+        dropped_faces=len(surface.faces) - len(cleaned.faces),
+    )
+    charts = face_charts(document.chart, cleaned)
+    return _dressed(document, cleaned, charts), report
+
+
+def default_resolution(document: Document) -> int:
+    """256, or as many cells as the document's sheets need: one for their half thickness."""
+    if not document.shell:
+        return DEFAULT_RESOLUTION
+    wanted = int(np.ceil(2 * LIMIT / document.shell))
+    return min(max(DEFAULT_RESOLUTION, wanted), MAX_RESOLUTION)
+
+
+def asset_uv(document: Document, points: Floats, charts: NDArray[np.integer]) -> Floats:
+    """UV of points (n, 3), normalised frame, on charts (n,) -> (n, 2); (0, 0) without UV."""
+    if document.uv is None:
+        return np.zeros((len(points), 2), np.float32)
+    table = document.charts
+    conditioned = document.uv.spec.conditioning != "none"
+    uvs = evaluate(document.uv, points, charts if conditioned else None)
+    placed = uvs * np.array(table.uv_scale, np.float32) + np.array(table.uv_offset, np.float32)
+    return np.where(table.has_uv[charts][:, None], placed, np.float32(0))
+
+
+def _dressed(document: Document, surface: Surface, charts: IndexArray) -> TexturedMesh:
+    """The surface with UVs, doubled at seams: one UV for each vertex and chart that meet."""
+    table = document.charts
+    corners = np.repeat(charts[:, None], 3, axis=1)
+    keys = surface.faces.astype(np.int64) << 32 | corners
+    pairs, inverse = np.unique(keys[table.has_uv[charts]], return_inverse=True)
+    uvs = asset_uv(document, surface.positions[pairs >> 32], (pairs & 0xFFFFFFFF).astype(np.int32))
+    uv_faces = np.full(surface.faces.shape, -1, np.int32)
+    uv_faces[table.has_uv[charts]] = inverse.reshape(-1, 3)
+    return TexturedMesh(
+        positions=document.frame.to_world(surface.positions),
+        faces=surface.faces,
+        uvs=uvs.astype(np.float64),
+        uv_faces=uv_faces,
+        face_materials=table.materials[charts].astype(np.int32),
+        materials=document.materials,
+        textures=document.textures,
+        name=str(document.info.get("name", "mesh")),
+    )

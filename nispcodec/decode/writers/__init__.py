@@ -1,0 +1,63 @@
+"""Mesh files: `write_mesh` picks the writer by the path's suffix."""
+
+from __future__ import annotations
+
+import os
+import tempfile
+from collections.abc import Callable
+from pathlib import Path
+
+from nispcodec.asset import TexturedMesh
+from nispcodec.decode.writers.glb import glb_bytes
+from nispcodec.decode.writers.obj import obj_files
+from nispcodec.decode.writers.ply import ply_bytes
+from nispcodec.decode.writers.stl import stl_bytes
+from nispcodec.errors import MeshError
+
+SINGLE: dict[str, Callable[[TexturedMesh], bytes]] = {
+    ".glb": glb_bytes,
+    ".ply": ply_bytes,
+    ".stl": stl_bytes,
+}
+SUFFIXES = (*SINGLE, ".obj")
+
+
+def write_mesh(mesh: TexturedMesh, path: Path) -> list[Path]:
+    """Write the mesh in the format of the path's suffix -> the files written, `path` last.
+
+    An OBJ puts its MTL and images beside it. Each file is written under another name and then
+    renamed. Raises MeshError for an unknown suffix, OSError when writing fails.
+    """
+    path = Path(path)
+    written = []
+    for name, data in _files(mesh, path).items():
+        written.append(path.with_name(name))
+        _replace(written[-1], data)
+    return written
+
+
+def _files(mesh: TexturedMesh, path: Path) -> dict[str, bytes]:
+    suffix = path.suffix.lower()
+    if suffix == ".obj":
+        files = obj_files(mesh, path.stem)
+        files[path.name] = files.pop(f"{path.stem}.obj")
+        return files
+    if suffix not in SINGLE:
+        found = repr(path.suffix) if path.suffix else "none"
+        raise MeshError(f"{path}: expected a suffix of {', '.join(SUFFIXES)}, found {found}")
+    return {path.name: SINGLE[suffix](mesh)}
+
+
+def _replace(path: Path, data: bytes) -> None:
+    handle, temporary = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
+    try:
+        with os.fdopen(handle, "wb") as file:
+            file.write(data)
+        # mkstemp makes files for the owner only; a mesh is to be read like any new file.
+        mask = os.umask(0)
+        os.umask(mask)
+        Path(temporary).chmod(0o666 & ~mask)
+        Path(temporary).replace(path)
+    except BaseException:
+        Path(temporary).unlink(missing_ok=True)
+        raise

@@ -1,0 +1,117 @@
+"""The numpy evaluation against a plain reading of the specification, point by point."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from nispcodec.decode.evaluate import BLOCK, evaluate, gradient
+from nispcodec.errors import QueryError
+from nispcodec.network import Network, NetworkSpec
+from tests import tiny
+
+SPECS = {
+    "siren": NetworkSpec((16, 12), 3, w0=30.0),
+    "relu fourier tanh": NetworkSpec(
+        (16,), 1, encoding="fourier", levels=5, activation="relu", output="tanh"
+    ),
+    "scalar fourier": NetworkSpec(
+        (8, 8), 2, encoding="fourier", levels=3, conditioning="scalar", charts=7, w0=1.0
+    ),
+    "scalar identity": NetworkSpec((8,), 2, conditioning="scalar", charts=7, output="sigmoid"),
+    "embedding": NetworkSpec((8, 8), 2, conditioning="embedding", charts=5, embedding=3, w0=2.0),
+    "embedding fourier": NetworkSpec(
+        (8,), 2, encoding="fourier", levels=2, conditioning="embedding", charts=5, embedding=3
+    ),
+}
+
+
+def by_hand(network: Network, point: np.ndarray, chart: int) -> list[float]:
+    spec = network.spec
+    coordinates = [float(p) for p in point]
+    if spec.conditioning == "scalar":
+        coordinates.append((2 * chart + 1) / spec.charts - 1)
+    values = coordinates
+    if spec.encoding == "fourier":
+        values = []
+        for p in coordinates:
+            for i in range(spec.levels):
+                values += [math.sin(2**i * math.pi * p), math.cos(2**i * math.pi * p)]
+    if spec.conditioning == "embedding":
+        values = [*values, *network.tensors["embedding"][chart].tolist()]
+    for weight, bias in network.layers[:-1]:
+        before = weight.astype(float) @ np.array(values) + bias
+        sine = spec.activation == "sine"
+        values = [math.sin(spec.w0 * z) if sine else max(0.0, z) for z in before]
+    weight, bias = network.layers[-1]
+    last = weight.astype(float) @ np.array(values) + bias
+    outputs = {
+        "identity": lambda z: z,
+        "tanh": math.tanh,
+        "sigmoid": lambda z: 1 / (1 + math.exp(-z)),
+    }
+    return [outputs[spec.output](z) for z in last]
+
+
+@pytest.mark.parametrize("name", SPECS)
+def test_agrees_with_the_specification(name: str) -> None:
+    network = tiny.random_network(SPECS[name], seed=3, scale=0.2)
+    rng = np.random.default_rng(0)
+    points = rng.uniform(-1, 1, (50, 3)).astype(np.float32)
+    charts = rng.integers(0, max(network.spec.charts, 1), 50)
+    expected = [by_hand(network, p, c) for p, c in zip(points, charts.tolist(), strict=True)]
+    np.testing.assert_allclose(evaluate(network, points, charts), expected, atol=2e-5)
+
+
+@pytest.mark.parametrize("count", [0, 1, BLOCK - 1, BLOCK, BLOCK + 1, 3 * BLOCK + 5])
+def test_any_number_of_points(count: int) -> None:
+    network = tiny.random_network(SPECS["siren"], scale=0.1)
+    points = np.random.default_rng(1).uniform(-1, 1, (count, 3)).astype(np.float32)
+    values = evaluate(network, points)
+    assert values.shape == (count, 3)
+    assert values.dtype == np.float32
+    for row in {0, count // 2, count - 1} & set(range(count)):
+        np.testing.assert_allclose(values[row], by_hand(network, points[row], 0), atol=1e-4)
+
+
+@pytest.mark.parametrize("activation", ["sine", "relu"])
+@pytest.mark.parametrize("encoding", ["identity", "fourier"])
+@pytest.mark.parametrize("output", ["identity", "tanh", "sigmoid"])
+def test_gradient_is_the_slope_of_the_values(activation: str, encoding: str, output: str) -> None:
+    spec = NetworkSpec(
+        (12, 12, 12),
+        1,
+        encoding=encoding,
+        levels=2 if encoding == "fourier" else 0,
+        activation=activation,
+        w0=2.0,
+        output=output,
+    )
+    network = tiny.random_network(spec, seed=5)
+    points = np.random.default_rng(2).uniform(-1, 1, (200, 3)).astype(np.float32)
+    values, slopes = gradient(network, points)
+    np.testing.assert_allclose(values, evaluate(network, points)[:, 0], atol=1e-6)
+    step = 1e-3
+    for axis in range(3):
+        offset = np.float32(step) * np.eye(3, dtype=np.float32)[axis]
+        rise = evaluate(network, points + offset) - evaluate(network, points - offset)
+        error = np.abs(rise[:, 0] / (2 * step) - slopes[:, axis])
+        # A ReLU's kink between the two samples spoils the difference quotient, not the slope.
+        assert np.quantile(error, 0.9) < 5e-3
+
+
+def test_gradient_of_no_points() -> None:
+    values, slopes = gradient(tiny.octahedron(), np.zeros((0, 3), np.float32))
+    assert values.shape == (0,)
+    assert slopes.shape == (0, 3)
+
+
+@pytest.mark.parametrize(
+    "charts", [None, np.zeros(4, np.int32), np.array([0, 1, 5]), np.array([0, -1, 2])]
+)
+def test_bad_charts_are_refused(charts: np.ndarray | None) -> None:
+    network = tiny.random_network(SPECS["embedding"])
+    with pytest.raises(QueryError, match="charts: expected"):
+        evaluate(network, np.zeros((3, 3), np.float32), charts)
