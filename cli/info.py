@@ -1,0 +1,95 @@
+"""`nisp info`: what is in a `.nisp` file."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from .report import print_group, print_json, rate
+
+if TYPE_CHECKING:
+    from nispcodec.asset import Material
+    from nispcodec.document import Document
+    from nispcodec.network import Network
+
+
+@click.command("info", short_help="Show what a .nisp file holds.")
+@click.argument("model", type=click.Path(path_type=Path))
+@click.option("--json", "as_json", is_flag=True, help="As JSON.")
+def command(model: Path, as_json: bool) -> None:
+    """Show MODEL's sections, bytes per part, networks, materials and textures.
+
+    \b
+    Example: nisp info model.nisp --json
+    """
+    from nispcodec.format import unpack
+
+    data = model.read_bytes()
+    facts = describe(unpack(data), data)
+    if as_json:
+        print_json(facts)
+    else:
+        print_group(str(model), facts)
+
+
+def describe(document: Document, data: bytes) -> dict[str, Any]:
+    """Everything about a file that can be said without evaluating its networks."""
+    return {
+        "bytes": rate(data),
+        "sections": _sections(data),
+        "frame": {
+            "center": list(document.frame.center),
+            "radius": document.frame.radius,
+        },
+        "charts": len(document.charts),
+        "shell": document.shell,
+        "networks": {name: _network(each) for name, each in document.networks.items()},
+        "materials": {
+            f"{index} {each.name}": _material(each) for index, each in enumerate(document.materials)
+        },
+        "textures": {
+            f"{index} {each.name}": f"{each.mime}, {len(each.data):,} bytes"
+            for index, each in enumerate(document.textures)
+        },
+        "measured": dict(document.info),
+    }
+
+
+def _sections(data: bytes) -> dict[str, Any]:
+    from nispcodec.format import inspect
+
+    return {
+        each.code: {
+            "packing": each.packing,
+            "offset": each.offset,
+            "stored": each.stored_length,
+            "decoded": each.decoded_length,
+            **({"parts": dict(each.parts)} if each.parts else {}),
+        }
+        for each in inspect(data)
+    }
+
+
+def _network(network: Network) -> dict[str, Any]:
+    spec = network.spec
+    layers = (spec.inputs, *spec.hidden, spec.outputs)
+    facts = {
+        "layers": "-".join(str(width) for width in layers),
+        "weights": spec.weight_count,
+        "activation": spec.activation,
+        "encoding": spec.encoding,
+        "quantised_tensors": f"{len(network.steps)} of {len(network.tensors)}",
+    }
+    if spec.conditioning != "none":
+        facts["conditioning"] = spec.conditioning
+    return facts
+
+
+def _material(material: Material) -> dict[str, Any]:
+    return {
+        "base_color": list(material.base_color),
+        "alpha_mode": material.alpha_mode,
+        "maps": {slot: used.texture for slot, used in material.maps.items()},
+    }
