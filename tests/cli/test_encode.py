@@ -1,0 +1,156 @@
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass
+from pathlib import Path
+
+import pytest
+from nispcodec_cli.progress import Bars, Lines, described, duration
+
+import nispcodec
+from nispcodec.decode.model import NispModel
+from nispcodec.errors import FitError
+from tests import tiny
+from tests.cli.conftest import nisp
+
+
+@dataclass
+class Update:
+    network: str = "uv"
+    stage: str = "fit"
+    step: int = 0
+    steps: int = 0
+    loss: float | None = None
+    error: float | None = None
+    seconds_left: float | None = None
+    note: str = ""
+
+
+UPDATES = [
+    Update("", "samples"),
+    Update("sdf", step=10, steps=100, loss=0.5, error=1e-3, seconds_left=75),
+    Update("sdf", step=11, steps=100, loss=0.4, note="diverged at step 11, retrying"),
+    Update("uv", step=1, steps=100),
+]
+
+
+@pytest.fixture
+def encoder(monkeypatch):
+    """Stand-in for the encoder: tells UPDATES, then does what the test wants."""
+    seen = {}
+
+    def install(outcome):
+        def encode(mesh, config, progress=None):
+            seen.update(mesh=mesh, config=config)
+            for update in UPDATES if progress else ():
+                progress(update)
+            if isinstance(outcome, BaseException):
+                raise outcome
+            return NispModel(outcome)
+
+        monkeypatch.setattr(nispcodec, "encode", encode, raising=False)
+        return seen
+
+    return install
+
+
+def test_encode_writes_and_reports(encoder, mesh: Path, tmp_path: Path) -> None:
+    seen = encoder(tiny.document())
+    out = tmp_path / "out.nisp"
+    result = nisp("encode", mesh, "-o", out, "--seed", 7, "--no-textures", "--json")
+    assert result.exit_code == 0, result.output
+    report = json.loads(result.stdout)
+    assert report["bytes"]["total"] == out.stat().st_size
+    assert report["input_bytes"]["mesh"] == mesh.stat().st_size
+    assert report["input_bytes"]["textures"] > 0
+    assert (seen["config"].seed, seen["config"].textures) == (7, False)
+    assert "diverged at step 11" in result.stderr
+
+
+def test_encode_report_for_people(encoder, mesh: Path, tmp_path: Path) -> None:
+    encoder(tiny.document())
+    result = nisp("encode", mesh, "-o", tmp_path / "out.nisp")
+    assert result.exit_code == 0, result.output
+    assert "geometry uv" in result.stdout
+
+
+def test_quiet_is_quiet(encoder, mesh: Path, tmp_path: Path) -> None:
+    encoder(tiny.document())
+    assert nisp("encode", mesh, "-o", tmp_path / "out.nisp", "--quiet").stderr == ""
+
+
+@pytest.mark.parametrize(
+    ("outcome", "code", "said"),
+    [
+        (KeyboardInterrupt(), 130, "interrupted"),
+        (FitError("sdf: diverged three times"), 2, "nisp: error: sdf: diverged three times"),
+        (OSError(28, "No space left on device", "out.nisp"), 2, "out.nisp: No space left"),
+    ],
+)
+def test_nothing_is_written_when_it_fails(
+    encoder, mesh: Path, tmp_path: Path, outcome: BaseException, code: int, said: str
+) -> None:
+    encoder(outcome)
+    before = sorted(tmp_path.iterdir())
+    result = nisp("encode", mesh, "-o", tmp_path / "out.nisp", "--quiet")
+    assert result.exit_code == code
+    assert said in result.stderr
+    assert sorted(tmp_path.iterdir()) == before
+
+
+def test_bad_output_is_refused_before_any_work(encoder, mesh: Path, tmp_path: Path) -> None:
+    seen = encoder(tiny.document())
+    assert nisp("encode", mesh, "-o", tmp_path / "out.obj").exit_code == 2
+    assert nisp("encode", mesh, "-o", tmp_path / "nowhere" / "out.nisp").exit_code == 2
+    assert seen == {}
+
+
+@pytest.mark.parametrize("content", ["", "v 0 0 0\n", "v 0 0 nan\nf 1 1 1\n", "f 1 2 3\n"])
+def test_bad_mesh_is_named_and_nothing_written(encoder, tmp_path: Path, content: str) -> None:
+    encoder(tiny.document())
+    (tmp_path / "bad.obj").write_text(content)
+    result = nisp("encode", tmp_path / "bad.obj", "-o", tmp_path / "out.nisp")
+    assert result.exit_code == 2
+    assert result.stderr.startswith("nisp: error: ")
+    assert "bad.obj" in result.stderr
+    assert not (tmp_path / "out.nisp").exists()
+
+
+def test_missing_texture_is_a_warning(encoder, mesh: Path, tmp_path: Path) -> None:
+    encoder(tiny.document())
+    next(tmp_path.glob("*.png")).unlink()
+    result = nisp("encode", mesh, "-o", tmp_path / "out.nisp", "--quiet")
+    assert result.exit_code == 0
+    assert "nisp: warning: " in result.stderr
+
+
+def test_line_says_what_is_known() -> None:
+    assert described(UPDATES[1]) == (
+        "sdf fit: step 10/100, loss 5.00e-01, held-out error 1.00e-03, 1 min 15 s left"
+    )
+    assert described(UPDATES[0]) == "samples"
+    assert described(UPDATES[2]).endswith("diverged at step 11, retrying")
+
+
+def test_lines_come_for_stages_and_notes_only_while_time_is_short(capsys) -> None:
+    show = Lines()
+    for step in range(100):
+        show(Update("sdf", step=step, steps=100))
+    show(Update("sdf", "quantise"))
+    show(Update("sdf", "quantise", note="hot"))
+    lines = capsys.readouterr().err.splitlines()
+    assert [line.split(":")[0] for line in lines] == ["sdf fit", "sdf quantise", "sdf quantise"]
+
+
+def test_bars_keep_one_row_a_network(capsys) -> None:
+    with Bars() as show:
+        for update in UPDATES:
+            show(update)
+    text = capsys.readouterr().err
+    assert "diverged at step 11" in text
+    assert text.count("held-out error 1.00e-03") <= 1
+
+
+def test_duration() -> None:
+    assert duration(8.4) == "8 s"
+    assert duration(119.6) == "2 min 0 s"
