@@ -10,6 +10,7 @@ from nispcodec.asset import TexturedMesh
 from nispcodec.errors import MeshError
 from nispcodec.mesh.cleanup import clean
 from nispcodec.mesh.folder import Folder
+from nispcodec.mesh.gltf import read_gltf
 from nispcodec.mesh.obj import read_obj
 
 # A reader takes the file's bytes, its name for messages, and the folder that it may refer to.
@@ -17,6 +18,8 @@ Reader = Callable[[bytes, str, Folder], TexturedMesh]
 
 READERS: dict[str, Reader] = {
     ".obj": read_obj,
+    ".gltf": read_gltf,
+    ".glb": read_gltf,
 }
 
 
