@@ -1,0 +1,59 @@
+"""Run a command and measure its wall time and the peak memory of its whole process tree."""
+
+from __future__ import annotations
+
+import subprocess
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+INTERVAL = 0.2
+
+
+@dataclass(frozen=True)
+class Run:
+    """What a finished command took. `peak_bytes` is the largest sampled sum of PSS."""
+
+    seconds: float
+    peak_bytes: int
+    stdout: str
+
+
+def run(command: Sequence[str | Path], scratch: Path) -> Run:
+    """Run to the end; raises RuntimeError with the last words of stderr when it fails.
+
+    `scratch` is a folder for the output of the command, which could fill a pipe.
+    """
+    out, err = scratch / "stdout", scratch / "stderr"
+    started, peak = time.monotonic(), 0
+    with out.open("wb") as stdout, err.open("wb") as stderr:
+        process = subprocess.Popen(list(map(str, command)), stdout=stdout, stderr=stderr)
+        while process.poll() is None:
+            peak = max(peak, sum(map(proportional_bytes, family(process.pid))))
+            time.sleep(INTERVAL)
+    seconds = time.monotonic() - started
+    if process.returncode != 0:
+        last = err.read_text(errors="replace")[-800:]
+        raise RuntimeError(f"{' '.join(map(str, command))}: exit {process.returncode}: {last}")
+    return Run(round(seconds, 2), peak, out.read_text())
+
+
+def family(pid: int) -> list[int]:
+    """The process and all its descendants, as far as they still run."""
+    try:
+        lists = [each.read_text() for each in Path(f"/proc/{pid}/task").glob("*/children")]
+    except OSError:
+        return []
+    children = [int(child) for text in lists for child in text.split()]
+    return [pid, *(each for child in children for each in family(child))]
+
+
+def proportional_bytes(pid: int) -> int:
+    """Memory of a process where pages shared by n processes count 1/n; 0 when it is gone."""
+    try:
+        text = Path(f"/proc/{pid}/smaps_rollup").read_text()
+    except OSError:
+        return 0
+    sizes = [int(line.split()[1]) for line in text.splitlines() if line.startswith("Pss:")]
+    return 1024 * sum(sizes)
