@@ -54,6 +54,8 @@ class Document:
     UV. `shell` is the half thickness (normalised frame) given to open sheets, 0 when there are
     none: then the surface has parts as thin as twice this.
     `info` holds what was measured and how the file was made: plain str, int, float and bool values.
+    `extra` holds the ancillary sections that this version does not know, by four-character code:
+    they are kept when the document is written again.
     """
 
     frame: Frame
@@ -65,6 +67,7 @@ class Document:
     uv: Network | None = None
     shell: float = 0.0
     info: Mapping[str, str | int | float | bool] = field(default_factory=dict)
+    extra: Mapping[str, bytes] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         k = len(self.charts)

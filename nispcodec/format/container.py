@@ -28,6 +28,8 @@ _HEADER = struct.Struct("<8sBBHI")
 _ENTRY = struct.Struct("<4sHHIIII")
 _CODE = re.compile(rb"[A-Z0-9]{4}")
 _ZSTD_LEVEL = 19
+_ZSTD_LEVEL_LARGE = 3
+_LARGE = 2**20
 
 
 @dataclass(frozen=True)
@@ -48,20 +50,27 @@ class Entry:
 
 
 def write_container(sections: Iterable[tuple[str, bool, bytes]]) -> bytes:
-    """(code, critical, content) of every section, in any order -> the bytes of the file."""
-    packed = [(code, critical, content, *_pack(content)) for code, critical, content in sections]
-    packed.sort(key=lambda row: row[0])
-    offset = HEADER_SIZE + ENTRY_SIZE * len(packed)
-    table = b""
-    for code, critical, content, packing, payload in packed:
+    """(code, critical, content) of every section, in any order -> the bytes of the file.
+
+    `FormatError` for a code that is not four of A-Z and 0-9, and beyond the caps.
+    """
+    rows = sorted(sections)
+    offset = HEADER_SIZE + ENTRY_SIZE * len(rows)
+    budget = MAX_UNPACKED
+    table, payloads = b"", []
+    for code, critical, content in rows:
+        packing, payload = _pack(content, budget)
+        budget -= len(content) if packing == "zstd" else 0
         numbers = (offset, len(payload), len(content), crc32(payload))
-        table += _ENTRY.pack(code.encode(), CRITICAL * critical, packing, *numbers)
+        packing_number = 1 + PACKINGS.index(packing)
+        table += _ENTRY.pack(code.encode(), CRITICAL * critical, packing_number, *numbers)
+        payloads.append(payload)
         offset += len(payload)
-    if offset > MAX_FILE:
-        raise FormatError("header", "file length", f"at most {MAX_FILE} bytes", offset)
-    start = _HEADER.pack(SIGNATURE, MAJOR, MINOR, len(packed), 0)[:12]
-    header = start + struct.pack("<I", crc32(start + table))
-    return b"".join([header, table, *(row[4] for row in packed)])
+        if offset > MAX_FILE:
+            raise FormatError(code, "file length", f"at most {MAX_FILE} bytes", offset)
+    _check_order([_check_code(code.encode(errors="replace")) for code, _, _ in rows])
+    start = _HEADER.pack(SIGNATURE, MAJOR, MINOR, len(rows), 0)[:12]
+    return b"".join([start, struct.pack("<I", crc32(start + table)), table, *payloads])
 
 
 def read_container(data: bytes) -> list[Entry]:
@@ -84,10 +93,10 @@ def read_container(data: bytes) -> list[Entry]:
     return entries
 
 
-def content(entry: Entry) -> bytes:
-    """The unpacked payload of one section; allocates at most its decoded length."""
+def content(entry: Entry) -> memoryview:
+    """The unpacked payload of one section; allocates its decoded length if packed, else nothing."""
     if entry.packing == "raw":
-        return bytes(entry.payload)
+        return entry.payload
     try:
         declared = zstandard.get_frame_parameters(entry.payload).content_size
         if declared != entry.decoded_length:
@@ -99,16 +108,15 @@ def content(entry: Entry) -> bytes:
         raise FormatError(entry.code, "payload", "one zstd frame", error) from error
     if len(unpacked) != entry.decoded_length:
         raise FormatError(entry.code, "decoded length", entry.decoded_length, len(unpacked))
-    return unpacked
+    return memoryview(unpacked)
 
 
-def _pack(content: bytes) -> tuple[int, bytes]:
-    squeezed = zstandard.ZstdCompressor(level=_ZSTD_LEVEL, write_content_size=True).compress(
-        content
-    )
-    if len(squeezed) < len(content):
-        return 1 + PACKINGS.index("zstd"), squeezed
-    return 1 + PACKINGS.index("raw"), content
+def _pack(content: bytes, budget: int) -> tuple[str, bytes]:
+    level = _ZSTD_LEVEL if len(content) < _LARGE else _ZSTD_LEVEL_LARGE
+    squeezed = zstandard.ZstdCompressor(level=level, write_content_size=True).compress(content)
+    if len(squeezed) < len(content) <= budget:
+        return "zstd", squeezed
+    return "raw", content
 
 
 def _read_header(data: bytes) -> int:
@@ -134,9 +142,7 @@ def _read_entry(data: bytes, row: int, start: int) -> Entry:
     raw_code, flags, packing, offset, stored, decoded, checksum = _ENTRY.unpack_from(
         data, HEADER_SIZE + ENTRY_SIZE * row
     )
-    if not _CODE.fullmatch(raw_code):
-        raise FormatError("header", f"code of section {row}", "four of A-Z and 0-9", raw_code)
-    code = raw_code.decode()
+    code = _check_code(raw_code)
     if flags & ~CRITICAL:
         raise FormatError(code, "flags", f"0 or {CRITICAL}", flags)
     if not 1 <= packing <= len(PACKINGS):
@@ -147,10 +153,18 @@ def _read_entry(data: bytes, row: int, start: int) -> Entry:
         raise FormatError(code, "stored length", f"at most {len(data) - start}", stored)
     if packing == 1 and decoded != stored:
         raise FormatError(code, "decoded length", stored, decoded)
+    if packing == 2 and decoded <= stored:
+        raise FormatError(code, "decoded length", f"more than the {stored} stored", decoded)
     payload = memoryview(data)[start : start + stored]
     if crc32(payload) != checksum:
         raise FormatError(code, "checksum", f"{crc32(payload):#010x}", f"{checksum:#010x}")
     return Entry(code, bool(flags & CRITICAL), PACKINGS[packing - 1], offset, decoded, payload)
+
+
+def _check_code(code: bytes) -> str:
+    if not _CODE.fullmatch(code):
+        raise FormatError("header", "section code", "four of A-Z and 0-9", code)
+    return code.decode()
 
 
 def _check_order(codes: list[str]) -> None:

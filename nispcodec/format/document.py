@@ -11,6 +11,11 @@ from nispcodec.errors import FormatError
 from nispcodec.format import canonical, metadata, weights
 from nispcodec.format.constants import CRITICAL_SECTIONS, INFO, KNOWN_SECTIONS, META, NETS, TXTR
 from nispcodec.format.container import Entry, content, read_container, write_container
+from nispcodec.format.record import located
+
+Scalar = str | int | float | bool
+_SCALARS = (str, int, float, bool)
+_PLAIN = "a map from text to text, numbers and bools"
 
 
 @dataclass(frozen=True)
@@ -31,45 +36,56 @@ def pack(document: Document, coding: str | None = None) -> bytes:
 
     The same document gives the same bytes. Raises `FormatError` for a document beyond the caps.
     """
+    if known := sorted(set(document.extra) & set(KNOWN_SECTIONS)):
+        raise FormatError(known[0], "extra", "a code unknown to this version", known[0])
     sections = [
         (META, True, metadata.encode(document)),
         (NETS, True, weights.encode(document.networks, coding)),
+        *((code, False, data) for code, data in document.extra.items()),
     ]
     if document.textures:
         sections.append((TXTR, True, b"".join(texture.data for texture in document.textures)))
     if document.info:
-        sections.append((INFO, False, canonical.encode(INFO, dict(document.info))))
+        sections.append((INFO, False, _encode_info(document.info)))
     return write_container(sections)
 
 
 def unpack(data: bytes) -> Document:
     """A file's bytes -> its document. Raises `FormatError` and nothing else, whatever the bytes."""
-    entries = _known(read_container(data))
+    entries = _by_code(read_container(data))
     meta = metadata.decode(_required(entries, META))
     networks = weights.decode(meta.specs, _required(entries, NETS))
     if "sdf" not in networks:
         raise FormatError(META, "networks.sdf", "present", "absent")
-    return Document(
-        frame=meta.frame,
-        charts=meta.charts,
-        materials=meta.materials,
-        textures=_read_textures(meta, entries),
-        sdf=networks["sdf"],
-        chart=networks.get("chart"),
-        uv=networks.get("uv"),
-        shell=meta.shell,
-        info=_read_info(entries),
-    )
+    with located(META, "document"):
+        return Document(
+            frame=meta.frame,
+            charts=meta.charts,
+            materials=meta.materials,
+            textures=_read_textures(meta, entries),
+            sdf=networks["sdf"],
+            chart=networks.get("chart"),
+            uv=networks.get("uv"),
+            shell=meta.shell,
+            info=_read_info(entries),
+            extra={
+                code: bytes(content(entry))
+                for code, entry in entries.items()
+                if code not in KNOWN_SECTIONS
+            },
+        )
 
 
 def inspect(data: bytes) -> list[SectionInfo]:
-    """The sections of a valid file in file order, with what their bytes are spent on."""
-    unpack(data)
-    entries = read_container(data)
-    meta = metadata.decode(_required(_known(entries), META))
-    parts = {
+    """The sections of a file in file order, with what their bytes are spent on.
+
+    Raises `FormatError` as `unpack` does.
+    """
+    entries = _by_code(read_container(data))
+    meta = metadata.decode(_required(entries, META))
+    parts: dict[str, dict[str, int]] = {
+        NETS: weights.sizes(meta.specs, _required(entries, NETS)),
         TXTR: {name: length for name, _, length in meta.textures},
-        NETS: weights.sizes(meta.specs, _required(_known(entries), NETS)),
     }
     return [
         SectionInfo(
@@ -81,45 +97,56 @@ def inspect(data: bytes) -> list[SectionInfo]:
             decoded_length=entry.decoded_length,
             parts=parts.get(entry.code, {}),
         )
-        for entry in entries
+        for entry in entries.values()
     ]
 
 
-def _known(entries: list[Entry]) -> dict[str, Entry]:
+def _by_code(entries: list[Entry]) -> dict[str, Entry]:
     for entry in entries:
-        if entry.critical and entry.code not in CRITICAL_SECTIONS:
-            known = ", ".join(sorted(CRITICAL_SECTIONS))
-            raise FormatError(entry.code, "code", f"a critical section of {known}", entry.code)
-        if not entry.critical and entry.code in CRITICAL_SECTIONS:
+        known = entry.code in CRITICAL_SECTIONS
+        if entry.critical and not known:
+            expected = f"a critical section of {', '.join(CRITICAL_SECTIONS)}"
+            raise FormatError(entry.code, "section code", expected, entry.code)
+        if known and not entry.critical:
             raise FormatError(entry.code, "flags", "critical", "ancillary")
-    return {entry.code: entry for entry in entries if entry.code in KNOWN_SECTIONS}
+    return {entry.code: entry for entry in entries}
 
 
-def _required(entries: Mapping[str, Entry], code: str) -> bytes:
+def _required(entries: Mapping[str, Entry], code: str) -> memoryview:
     if code not in entries:
         raise FormatError(code, "section", "present", "absent")
     return content(entries[code])
 
 
 def _read_textures(meta: metadata.Metadata, entries: Mapping[str, Entry]) -> tuple[Texture, ...]:
-    data = content(entries[TXTR]) if TXTR in entries else b""
+    if not meta.textures and TXTR in entries:
+        raise FormatError(TXTR, "section", "absent without textures", "present")
+    data = _required(entries, TXTR) if meta.textures else memoryview(b"")
+    total = sum(length for _, _, length in meta.textures)
+    if total != len(data):
+        raise FormatError(TXTR, "length", total, len(data))
     textures: list[Texture] = []
     start = 0
     for name, mime, length in meta.textures:
-        textures.append(Texture(name, data[start : start + length], mime))
+        textures.append(Texture(name, bytes(data[start : start + length]), mime))
         start += length
-    if start != len(data):
-        raise FormatError(TXTR, "length", start, len(data))
     return tuple(textures)
 
 
-def _read_info(entries: Mapping[str, Entry]) -> dict[str, str | int | float | bool]:
+def _encode_info(info: Mapping[str, Scalar]) -> bytes:
+    plain = all(isinstance(value, _SCALARS) for value in info.values())
+    if not plain or not all(isinstance(key, str) for key in info):
+        raise FormatError(INFO, "info", _PLAIN, "another type")
+    return canonical.encode(INFO, dict(info))
+
+
+def _read_info(entries: Mapping[str, Entry]) -> dict[str, Scalar]:
     if INFO not in entries:
         return {}
     info = canonical.decode(INFO, content(entries[INFO]))
-    plain = isinstance(info, dict) and all(
-        type(key) is str and type(value) in (str, int, float, bool) for key, value in info.items()
-    )
-    if not plain:
-        raise FormatError(INFO, "info", "a map from text to text, numbers and bools", "another")
-    return dict(info)
+    if not isinstance(info, dict) or not info:
+        raise FormatError(INFO, "info", "a map that is not empty", type(info).__name__)
+    for key, value in info.items():
+        if type(key) is not str or type(value) not in _SCALARS:
+            raise FormatError(INFO, "info", _PLAIN, f"{type(key).__name__}: {type(value).__name__}")
+    return info

@@ -1,7 +1,9 @@
-"""A metadata map with small integer keys, read field by field with its type checked."""
+"""A metadata map with small integer keys: written without its defaults, read field by field."""
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from typing import Any, TypeVar
 
 from nispcodec.errors import FormatError
@@ -35,7 +37,7 @@ class Record:
         if type(value) is not kind:
             raise self.error(name, kind.__name__, type(value).__name__)
         if value == default:
-            raise self.error(name, "absent, being the default", value)
+            raise self.error(name, "absent, being the default", "present")
         return value
 
     def floats(
@@ -45,20 +47,30 @@ class Record:
         fallback = None if default is None else list(default)
         values = self.take(key, name, list, fallback)
         if len(values) != count or not all(type(value) is float for value in values):
-            raise self.error(name, f"{count} floats", values)
+            raise self.error(name, f"{count} floats", f"{len(values)} values")
         return tuple(values)
 
-    def member(self, key: int, name: str, members: tuple[str, ...], default: str) -> str:
-        """A member of an enumeration, on disk its position counted from 1."""
-        number = self.take(key, name, int, 1 + members.index(default))
-        if not 1 <= number <= len(members):
-            raise self.error(name, f"1 to {len(members)}", number)
-        return members[number - 1]
+    def integer(self, key: int, name: str, low: int, high: int, default: int | None = None) -> int:
+        """An integer from `low` to `high`."""
+        value = self.take(key, name, int, default)
+        if not low <= value <= high:
+            raise self.error(name, f"{low} to {high}", value)
+        return value
+
+    def member(self, key: int, name: str, members: tuple[str, ...]) -> str:
+        """A member of an enumeration, on disk its position counted from 1; the first by default."""
+        return members[self.integer(key, name, 1, len(members), 1) - 1]
+
+    def text(self, key: int, name: str, default: str | None = None) -> str:
+        """A text that `check_text` lets pass."""
+        value = self.take(key, name, str, default)
+        check_text(self.section, f"{self.path}.{name}", value)
+        return value
 
     def finish(self) -> None:
         """Raises for keys that no getter asked for."""
         if self._values:
-            raise self.error("keys", "only known keys", sorted(map(repr, self._values)))
+            raise self.error("keys", "only known keys", min(map(repr, self._values)))
 
     def error(self, name: str, expected: object, found: object) -> FormatError:
         """An error at this record."""
@@ -68,3 +80,33 @@ class Record:
 def sparse(fields: dict[int, tuple[Any, Any]]) -> dict[int, Any]:
     """{key: (value, default)} without the fields that have their default."""
     return {key: value for key, (value, default) in fields.items() if value != default}
+
+
+def number(section: str, path: str, value: str, members: tuple[str, ...]) -> int:
+    """A member's number on disk."""
+    if value not in members:
+        raise FormatError(section, path, f"one of {', '.join(members)}", value)
+    return 1 + members.index(value)
+
+
+def check_text(section: str, path: str, value: str) -> None:
+    """No control characters: names go into text formats (MTL) where a line break is a command."""
+    if any(ord(letter) < 32 or ord(letter) == 127 for letter in value):
+        raise FormatError(section, path, "text without control characters", repr(value))
+
+
+def check_file_name(section: str, path: str, value: str) -> None:
+    """A bare file name: whoever unpacks a file must not be led out of the folder."""
+    check_text(section, path, value)
+    if value in ("", ".", "..") or any(letter in value for letter in "/\\:"):
+        raise FormatError(section, path, "a bare file name", repr(value))
+
+
+@contextmanager
+def located(section: str, path: str) -> Iterator[None]:
+    """Errors of the shared types, which know no section, get theirs."""
+    try:
+        yield
+    except FormatError as error:
+        field = f"{path}.{error.field}"
+        raise FormatError(section, field, error.expected, error.found) from error

@@ -3,109 +3,183 @@
 from __future__ import annotations
 
 import struct
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+import zstandard
 from numpy.typing import NDArray
 
 from nispcodec.errors import FormatError
-from nispcodec.format.codings import dense
+from nispcodec.format.codings import coo, csc, csr, dense, dia, entropy
 from nispcodec.format.codings.reader import Reader
-from nispcodec.format.constants import CODINGS, MAX_SYMBOL, MAX_WEIGHTS, NETS
+from nispcodec.format.constants import (
+    CODINGS,
+    MAX_SYMBOL,
+    MAX_WEIGHTS,
+    NETS,
+    QUANTISED,
+    SHORT_STEP,
+)
 from nispcodec.network import Network, NetworkSpec, Weights
 
-_CODERS = {"dense": dense}
-_QUANTISED = 0x80
+_OWN = {"dense": dense, "coo": coo, "csc": csc, "csr": csr, "dia": dia}
+
+
+@dataclass(frozen=True)
+class _Tensor:
+    """A tensor to write: what its tag says besides the coding, its step, its values in 2-D."""
+
+    mark: int
+    step: bytes
+    matrix: NDArray[Any]
+
+    def record(self, coding: str, payload: bytes) -> bytes:
+        return bytes([self.mark | 1 + CODINGS.index(coding)]) + self.step + payload
 
 
 def encode(networks: dict[str, Network], coding: str | None) -> bytes:
     """All tensors in file order; `coding` None takes the fewest bytes for each."""
-    return b"".join(
-        _encode_tensor(f"{name}.{key}", tensor, network.steps.get(key), coding)
-        for name, network in networks.items()
-        for key, tensor in network.tensors.items()
-    )
+    if coding is not None and coding not in CODINGS:
+        raise FormatError(NETS, "coding", f"one of {', '.join(CODINGS)}", coding)
+    _check_count([network.spec for network in networks.values()])
+    return b"".join(_encode_network(name, networks[name], coding) for name in networks)
 
 
-def decode(specs: dict[str, NetworkSpec], data: bytes) -> dict[str, Network]:
-    """The networks of these specs; allocates 8 bytes a weight at most, `MAX_WEIGHTS` in all."""
-    total = sum(spec.weight_count for spec in specs.values())
-    if total > MAX_WEIGHTS:
-        raise FormatError(NETS, "weights", f"at most {MAX_WEIGHTS}", total)
+def decode(specs: dict[str, NetworkSpec], data: bytes | memoryview) -> dict[str, Network]:
+    """The networks of these specs; no more than `MAX_WEIGHTS` weights in all."""
+    _check_count(list(specs.values()))
     reader = Reader(NETS, data)
     networks = {name: _decode_network(reader, name, spec) for name, spec in specs.items()}
-    reader.path = ""
     reader.finish()
     return networks
 
 
+def sizes(specs: dict[str, NetworkSpec], data: bytes | memoryview) -> dict[str, int]:
+    """Bytes of each network in the section."""
+    reader = Reader(NETS, data)
+    ends = [0]
+    for name, spec in specs.items():
+        _decode_network(reader, name, spec)
+        ends.append(reader.position)
+    return dict(zip(specs, np.diff(ends).tolist(), strict=True))
+
+
+def _check_count(specs: list[NetworkSpec]) -> None:
+    total = sum(spec.weight_count for spec in specs)
+    if total > MAX_WEIGHTS:
+        raise FormatError(NETS, "weights", f"at most {MAX_WEIGHTS}", total)
+
+
+def _encode_network(name: str, network: Network, coding: str | None) -> bytes:
+    tensors = [
+        _prepare(f"{name}.{key}", tensor, network.steps.get(key))
+        for key, tensor in network.tensors.items()
+    ]
+    if coding is not None:
+        return _assemble(tensors, [coding] * len(tensors))
+    own = [_best_own(tensor) for tensor in tensors]
+    pooled = entropy.Pool([tensor.matrix.ravel() for tensor in tensors]).sizes()
+    mixed = [
+        coding if size <= pool_size else "entropy"
+        for (coding, size), pool_size in zip(own, pooled, strict=True)
+    ]
+    choices = [[coding for coding, _ in own], mixed, ["entropy"] * len(tensors)]
+    return min((_assemble(tensors, choice) for choice in choices), key=_packed_length)
+
+
+def _prepare(path: str, tensor: Weights, step: float | None) -> _Tensor:
+    shape = _matrix_shape(tensor.shape)
+    if step is None:
+        return _Tensor(0, b"", (tensor + np.float32(0)).reshape(shape))  # adding 0 makes -0 a 0
+    symbols = _symbols(path, tensor, step).reshape(shape)
+    short = float(np.float16(step)) == float(np.float32(step))
+    mark = QUANTISED | SHORT_STEP if short else QUANTISED
+    return _Tensor(mark, struct.pack("<e" if short else "<f", step), symbols)
+
+
+def _best_own(tensor: _Tensor) -> tuple[str, int]:
+    """The coding of its own, without a pool, that takes the fewest bytes, and how many."""
+    lengths = {name: _packed_length(coder.encode(tensor.matrix)) for name, coder in _OWN.items()}
+    best = min(lengths, key=lambda name: lengths[name])
+    return best, lengths[best]
+
+
+def _packed_length(payload: bytes) -> int:
+    """What the payload will take in the file, nearly: the section is packed as a whole."""
+    return min(len(payload), len(zstandard.ZstdCompressor(level=9).compress(payload)))
+
+
+def _assemble(tensors: list[_Tensor], codings: list[str]) -> bytes:
+    chosen = [tensor for tensor, name in zip(tensors, codings, strict=True) if name == "entropy"]
+    pool = entropy.Pool([tensor.matrix.ravel() for tensor in chosen]) if chosen else None
+    heads = iter(pool.heads() if pool else [])
+    records = [
+        tensor.record(name, next(heads) if name == "entropy" else _OWN[name].encode(tensor.matrix))
+        for tensor, name in zip(tensors, codings, strict=True)
+    ]
+    return b"".join(records) + (pool.encode() if pool else b"")
+
+
 def _decode_network(reader: Reader, name: str, spec: NetworkSpec) -> Network:
-    tensors: dict[str, Weights] = {}
+    values: dict[str, NDArray[Any]] = {}
+    heads: dict[str, entropy.Head] = {}
     steps: dict[str, float] = {}
     for key, shape in spec.shapes.items():
         reader.path = f"{name}.{key}."
-        tensors[key], step = _decode_tensor(reader, shape)
+        coding, step = _read_tag(reader)
         if step is not None:
             steps[key] = step
+        if coding == "entropy":
+            heads[key] = entropy.read_head(reader, int(np.prod(shape)), step is not None)
+        else:
+            values[key] = _OWN[coding].decode(reader, _matrix_shape(shape), step is not None)
+    reader.path = f"{name}."
+    if heads:
+        values |= zip(heads, entropy.decode(reader, list(heads.values())), strict=True)
+    tensors = {
+        key: _scale(reader, key, values[key], steps.get(key)).reshape(shape)
+        for key, shape in spec.shapes.items()
+    }
+    reader.path = ""
     return Network(spec, tensors, steps)
 
 
-def _encode_tensor(path: str, tensor: Weights, step: float | None, coding: str | None) -> bytes:
-    matrix = _matrix(tensor.shape)
-    values = tensor if step is None else _symbols(path, tensor, step)
-    head = b"" if step is None else struct.pack("<f", step)
-    mark = 0 if step is None else _QUANTISED
-    candidates: list[bytes] = []
-    for name in CODINGS if coding is None else (coding,):
-        payload = _CODERS[name].encode(values.reshape(matrix)) if name in _CODERS else None
-        if payload is not None:
-            candidates.append(bytes([mark | 1 + CODINGS.index(name)]) + head + payload)
-    return min(candidates, key=len)
-
-
-def _decode_tensor(reader: Reader, shape: tuple[int, ...]) -> tuple[Weights, float | None]:
+def _read_tag(reader: Reader) -> tuple[str, float | None]:
+    """Coding and step of the next tensor."""
     tag = reader.take(1, "coding")[0]
-    quantised, number = bool(tag & _QUANTISED), tag & ~_QUANTISED
+    quantised, short = bool(tag & QUANTISED), bool(tag & SHORT_STEP)
+    number = tag & ~(QUANTISED | SHORT_STEP)
     if not 1 <= number <= len(CODINGS):
         raise reader.error("coding", f"1 to {len(CODINGS)}", number)
-    step = _read_step(reader) if quantised else None
-    coder = _CODERS[CODINGS[number - 1]]
-    values = coder.decode(reader, _matrix(shape), quantised).reshape(shape)
-    if step is None:
-        return values, None
+    if short and not quantised:
+        raise reader.error("coding", "no step width without a step", tag)
+    if not quantised:
+        return CODINGS[number - 1], None
+    step = float(struct.unpack("<e" if short else "<f", reader.take(2 if short else 4, "step"))[0])
+    if not 0 < step < np.inf:
+        raise reader.error("step", "a positive number", step)
+    return CODINGS[number - 1], step
+
+
+def _scale(reader: Reader, key: str, values: NDArray[Any], step: float | None) -> Weights:
     with np.errstate(over="ignore"):
-        return values.astype(np.float32) * np.float32(step), step
+        scaled = values if step is None else values.astype(np.float32) * np.float32(step)
+    if not np.isfinite(scaled).all():
+        raise reader.error(key, "finite weights", "NaN or infinity")
+    return np.ascontiguousarray(scaled)
 
 
-def _matrix(shape: tuple[int, ...]) -> tuple[int, int]:
+def _matrix_shape(shape: tuple[int, ...]) -> tuple[int, int]:
     """A bias is one row."""
     return (1, shape[0]) if len(shape) == 1 else (shape[0], shape[1])
 
 
-def _read_step(reader: Reader) -> float:
-    step = float(struct.unpack("<f", reader.take(4, "step"))[0])
-    if not 0 < step < np.inf:
-        raise reader.error("step", "a positive number", step)
-    return step
-
-
-def _symbols(path: str, tensor: Weights, step: float) -> NDArray[Any]:
+def _symbols(path: str, tensor: Weights, step: float) -> NDArray[np.int32]:
     single = np.float32(step)
     if not 0 < single < np.inf:
         raise FormatError(NETS, f"{path}.step", "a positive float32", step)
     symbols = np.rint(tensor.astype(np.float64) / np.float64(single))
-    exact = symbols.astype(np.float32) * single == tensor
-    if np.abs(symbols).max(initial=0) >= MAX_SYMBOL or not exact.all():
+    if np.abs(symbols).max() > MAX_SYMBOL or (symbols.astype(np.float32) * single != tensor).any():
         raise FormatError(NETS, path, f"multiples of the step {step}", "other weights")
     return symbols.astype(np.int32)
-
-
-def sizes(specs: dict[str, NetworkSpec], data: bytes) -> dict[str, int]:
-    """Bytes of each network in the decoded section."""
-    reader = Reader(NETS, data)
-    lengths = {}
-    for name, spec in specs.items():
-        start = reader.position
-        _decode_network(reader, name, spec)
-        lengths[name] = reader.position - start
-    return lengths

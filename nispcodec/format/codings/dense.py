@@ -1,4 +1,4 @@
-"""Dense: all values in row-major order, as the smallest number kind that holds them exactly."""
+"""Dense: every value, in row-major order."""
 
 from __future__ import annotations
 
@@ -10,12 +10,11 @@ from nispcodec.format.codings import numbers
 from nispcodec.format.codings.reader import Reader
 
 
-def encode(values: NDArray[Any]) -> bytes | None:
+def encode(values: NDArray[Any]) -> bytes:
     """(rows, columns) float32 weights or int32 symbols -> payload."""
     return numbers.encode(values.ravel())
 
 
 def decode(reader: Reader, shape: tuple[int, int], symbols: bool) -> NDArray[Any]:
-    """Payload -> (rows, columns)."""
-    count = shape[0] * shape[1]
-    return numbers.decode(reader, count, symbols).reshape(shape)
+    """Payload -> (rows, columns) float32, or int32 where `symbols`."""
+    return numbers.decode(reader, shape[0] * shape[1], symbols).reshape(shape)

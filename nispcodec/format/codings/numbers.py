@@ -15,15 +15,22 @@ FLOATS: Kinds = {"float16": np.dtype("<f2"), "float32": np.dtype("<f4")}
 INTEGERS: Kinds = {"int8": np.dtype("i1"), "int16": np.dtype("<i2"), "int32": np.dtype("<i4")}
 
 
+def smallest(values: NDArray[Any]) -> str:
+    """The smallest kind that holds (n,) float32 or int32 values exactly."""
+    kinds = FLOATS if values.dtype.kind == "f" else INTEGERS
+    with np.errstate(over="ignore"):
+        return next(
+            name
+            for name, dtype in kinds.items()
+            if (values.astype(dtype).astype(values.dtype) == values).all()
+        )
+
+
 def encode(values: NDArray[Any]) -> bytes:
     """(n,) float32 or int32 -> bytes, in the smallest kind that loses nothing."""
-    kinds = FLOATS if values.dtype.kind == "f" else INTEGERS
-    for name, dtype in kinds.items():
-        with np.errstate(over="ignore"):
-            stored = values.astype(dtype)
-        if (stored.astype(values.dtype) == values).all():
-            return bytes((1 + NUMBERS.index(name),)) + bytes(stored.data)
-    raise AssertionError("the last kind holds every value")
+    kind = smallest(values)
+    stored = values.astype((FLOATS | INTEGERS)[kind])
+    return bytes([1 + NUMBERS.index(kind)]) + stored.tobytes()
 
 
 def decode(reader: Reader, count: int, symbols: bool) -> NDArray[Any]:

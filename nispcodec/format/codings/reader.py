@@ -8,7 +8,7 @@ from nispcodec.errors import FormatError
 class Reader:
     """Reads `data` of `section` from front to back; `path` says where we are, for the errors."""
 
-    def __init__(self, section: str, data: bytes) -> None:
+    def __init__(self, section: str, data: bytes | memoryview) -> None:
         self.section = section
         self.path = ""
         self.position = 0

@@ -1,0 +1,52 @@
+"""Diagonals: which ones hold a value that is not zero, then all values of each, zeros included.
+
+Diagonal d, from 0 to rows + columns - 2, holds the places with column - row = d - (rows - 1); its
+values run from the top row down.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from nispcodec.format.codings import indices, numbers
+from nispcodec.format.codings.reader import Reader, varint
+
+
+def encode(values: NDArray[Any]) -> bytes:
+    """(rows, columns) float32 weights or int32 symbols -> payload."""
+    number = _diagonals(values.shape)
+    used = np.unique(number[values != 0])
+    gaps = indices.encode(np.diff(used, prepend=-1) - 1, number.max())
+    order = _order(number, used)
+    return varint(len(used)) + gaps + numbers.encode(values.ravel()[order])
+
+
+def decode(reader: Reader, shape: tuple[int, int], symbols: bool) -> NDArray[Any]:
+    """Payload -> (rows, columns) float32, or int32 where `symbols`."""
+    number = _diagonals(shape)
+    last = shape[0] + shape[1] - 2
+    count = reader.varint("diagonal count", last + 1)
+    used = np.cumsum(indices.decode(reader, "diagonal gap", count, last) + 1) - 1
+    if count and used[-1] > last:
+        raise reader.error("diagonal", f"at most {last}", used[-1])
+    order = _order(number, used)
+    matrix = np.zeros(shape, np.int32 if symbols else np.float32)
+    matrix.ravel()[order] = numbers.decode(reader, len(order), symbols)
+    return matrix
+
+
+def _diagonals(shape: tuple[int, ...]) -> NDArray[np.int64]:
+    """(rows, columns): the number of the diagonal through each place."""
+    rows, columns = np.indices(shape)
+    number: NDArray[np.int64] = columns - rows + shape[0] - 1
+    return number
+
+
+def _order(number: NDArray[np.int64], used: NDArray[np.int64]) -> NDArray[np.int64]:
+    """Row-major places on the used diagonals, diagonal after diagonal, each from the top."""
+    flat = number.ravel()
+    order = np.argsort(flat, kind="stable")
+    return order[np.isin(flat[order], used)]
