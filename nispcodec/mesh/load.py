@@ -12,6 +12,8 @@ from nispcodec.mesh.cleanup import clean
 from nispcodec.mesh.folder import Folder
 from nispcodec.mesh.gltf import read_gltf
 from nispcodec.mesh.obj import read_obj
+from nispcodec.mesh.plain import read_off, read_stl
+from nispcodec.mesh.ply import read_ply
 
 # A reader takes the file's bytes, its name for messages, and the folder that it may refer to.
 Reader = Callable[[bytes, str, Folder], TexturedMesh]
@@ -20,6 +22,9 @@ READERS: dict[str, Reader] = {
     ".obj": read_obj,
     ".gltf": read_gltf,
     ".glb": read_gltf,
+    ".ply": read_ply,
+    ".stl": read_stl,
+    ".off": read_off,
 }
 
 
