@@ -1,7 +1,8 @@
 """Evaluation of a network in plain numpy: blocks of points on every core.
 
-A block's activations are kept as (width, points) so that they fit a core's cache and the products
-are `weight @ activations`; a sine layer's w0 is folded into its weights beforehand.
+A block's activations are kept as (width + 1, points), the last row being ones: a layer is then one
+matrix product with `[weight | bias]`, and a block fits a core's cache. A sine layer's w0 is folded
+into its weights beforehand.
 """
 
 from __future__ import annotations
@@ -9,6 +10,7 @@ from __future__ import annotations
 import os
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
+from functools import cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,6 +20,7 @@ from nispcodec.errors import QueryError
 from nispcodec.network import Network, NetworkSpec
 
 Floats = NDArray[np.float32]
+Charts = NDArray[np.int32]
 Integers = NDArray[np.integer]
 
 BLOCK = 4096
@@ -30,18 +33,38 @@ def evaluate(network: Network, points: Floats, charts: Integers | None = None) -
     conditioned on the chart -> (n, outputs) float32. Any n, 0 included. Raises QueryError when a
     conditioned network gets no charts or charts that it does not know.
     """
-    charts = _checked_charts(network.spec, len(points), charts)
-    layers = _folded(network)
+    known = _checked_charts(network.spec, len(points), charts)
     result = np.empty((len(points), network.spec.outputs), np.float32)
+    forward = _Forward(network)
 
     def block(part: slice) -> None:
-        activations = _first(
-            network, layers, points[part], None if charts is None else charts[part]
-        )
-        for weight, bias in layers[1:]:
-            activations = weight @ _activated(network.spec, activations)
-            activations += bias
-        result[part] = _output(network.spec, activations).T
+        result[part] = forward(points[part], None if known is None else known[part]).T
+
+    _in_blocks(block, len(points))
+    return result
+
+
+def classify(network: Network, points: Floats) -> Charts:
+    """The number of the largest output at each point: (n, 3) float32 -> (n,) int32."""
+    result = np.empty(len(points), np.int32)
+    forward = _Forward(network)
+
+    def block(part: slice) -> None:
+        result[part] = forward(points[part], None).argmax(axis=0)
+
+    _in_blocks(block, len(points))
+    return result
+
+
+def contrast(network: Network, points: Floats, first: Charts, second: Charts) -> Floats:
+    """Output `first` minus output `second` at each point: (n, 3), (n,), (n,) -> (n,) float32."""
+    result = np.empty(len(points), np.float32)
+    forward = _Forward(network)
+
+    def block(part: slice) -> None:
+        outputs = forward(points[part], None)
+        columns = np.arange(outputs.shape[1])
+        result[part] = outputs[first[part], columns] - outputs[second[part], columns]
 
     _in_blocks(block, len(points))
     return result
@@ -52,33 +75,114 @@ def gradient(network: Network, points: Floats) -> tuple[Floats, Floats]:
 
     points (n, 3) float32, normalised frame -> values (n,), gradients (n, 3), both float32.
     """
-    layers = _folded(network)
     values = np.empty(len(points), np.float32)
     gradients = np.empty((len(points), 3), np.float32)
+    forward = _Forward(network)
 
     def block(part: slice) -> None:
-        values[part], gradients[part] = _block_gradient(network.spec, layers, points[part])
+        values[part], gradients[part] = forward.with_gradient(points[part])
 
     _in_blocks(block, len(points))
     return values, gradients
 
 
-Layers = list[tuple[Floats, Floats]]
+class _Forward:
+    """A network made ready for evaluation: call it with one block of points."""
 
+    def __init__(self, network: Network) -> None:
+        self.spec = network.spec
+        sine = self.spec.activation == "sine"
+        scales = [self.spec.w0 if sine else 1.0] * len(self.spec.hidden) + [1.0]
+        self.layers = [
+            np.hstack([weight, bias[:, None]]) * np.float32(scale)
+            for (weight, bias), scale in zip(network.layers, scales, strict=True)
+        ]
+        self.by_chart: Floats | None = None
+        if self.spec.conditioning == "embedding":
+            # The embedding meets the first layer only: one column of products for each chart.
+            first, width = self.layers[0], self.spec.embedding
+            self.by_chart = first[:, -1 - width : -1] @ network.tensors["embedding"].T
+            self.layers[0] = np.hstack([first[:, : -1 - width], first[:, -1:]])
 
-def _block_gradient(spec: NetworkSpec, layers: Layers, points: Floats) -> tuple[Floats, Floats]:
-    encoded = _encoded(spec, points.T)
-    before: list[Floats] = []
-    activations = encoded
-    for weight, bias in layers[:-1]:
-        before.append(weight @ activations + bias)
-        activations = _activated(spec, before[-1].copy())
-    weight, bias = layers[-1]
-    value = _output(spec, weight @ activations + bias)
-    slope = _output_slope(spec, value) * weight.T
-    for (weight, _), preactivation in zip(reversed(layers[:-1]), reversed(before), strict=True):
-        slope = weight.T @ (slope * _activation_slope(spec, preactivation))
-    return value[0], _through_encoding(spec, encoded, slope).T
+    def __call__(self, points: Floats, charts: Charts | None) -> Floats:
+        """Outputs (outputs, n) at points (n, 3)."""
+        activations = self._input(points, charts)
+        width = max(self.spec.hidden) + 1
+        buffers = np.empty((2, width, len(points)), np.float32)
+        for index, layer in enumerate(self.layers[:-1]):
+            following = buffers[index % 2, : len(layer) + 1]
+            following[-1] = 1
+            np.matmul(layer, activations, out=following[:-1])
+            if index == 0 and self.by_chart is not None and charts is not None:
+                following[:-1] += self.by_chart[:, charts]
+            self._activate(following[:-1])
+            activations = following
+        return self._output(self.layers[-1] @ activations)
+
+    def with_gradient(self, points: Floats) -> tuple[Floats, Floats]:
+        """Values (n,) and gradients (n, 3) by one pass forwards and one backwards."""
+        activations = encoded = self._input(points, None)
+        slopes: list[Floats] = []
+        for layer in self.layers[:-1]:
+            before = layer @ activations
+            slopes.append(self._activation_slope(before))
+            self._activate(before)
+            activations = np.vstack([before, np.ones((1, len(points)), np.float32)])
+        value = self._output(self.layers[-1] @ activations)
+        slope = self.layers[-1][:, :-1].T * self._output_slope(value)
+        for layer, local in zip(reversed(self.layers[:-1]), reversed(slopes), strict=True):
+            slope = layer[:, :-1].T @ (slope * local)
+        return value[0], self._through_encoding(encoded[:-1], slope).T
+
+    def _input(self, points: Floats, charts: Charts | None) -> Floats:
+        coordinates = points.T
+        if self.spec.conditioning == "scalar" and charts is not None:
+            scalar = (2 * charts + 1).astype(np.float32) / np.float32(self.spec.charts) - 1
+            coordinates = np.vstack([coordinates, scalar.astype(np.float32)])
+        if self.spec.encoding == "fourier":
+            angles = self._frequencies[:, None] * coordinates[:, None, :]
+            waves = np.stack([np.sin(angles), np.cos(angles)], axis=2)
+            coordinates = waves.reshape(-1, len(points))
+        return np.vstack([coordinates, np.ones((1, len(points)), np.float32)])
+
+    def _through_encoding(self, encoded: Floats, slope: Floats) -> Floats:
+        if self.spec.encoding == "identity":
+            return slope
+        shape = (3, self.spec.levels, 2, -1)
+        waves, slopes = encoded.reshape(shape), slope.reshape(shape)
+        turned = slopes[:, :, 0] * waves[:, :, 1] - slopes[:, :, 1] * waves[:, :, 0]
+        result: Floats = (turned * self._frequencies[:, None]).sum(axis=1)
+        return result
+
+    @property
+    def _frequencies(self) -> Floats:
+        return np.array([np.pi * 2**level for level in range(self.spec.levels)], np.float32)
+
+    def _activate(self, values: Floats) -> None:
+        if self.spec.activation == "sine":
+            np.sin(values, out=values)
+        else:
+            np.maximum(values, 0, out=values)
+
+    def _activation_slope(self, before: Floats) -> Floats:
+        # The factor w0 of a sine layer is already in the folded weights.
+        return np.cos(before) if self.spec.activation == "sine" else (before > 0).astype(np.float32)
+
+    def _output(self, values: Floats) -> Floats:
+        if self.spec.output == "tanh":
+            return np.tanh(values)
+        if self.spec.output == "sigmoid":
+            values = np.tanh(np.float32(0.5) * values)
+            values += 1
+            values *= 0.5
+        return values
+
+    def _output_slope(self, outputs: Floats) -> Floats:
+        if self.spec.output == "tanh":
+            return 1 - outputs * outputs
+        if self.spec.output == "sigmoid":
+            return outputs * (1 - outputs)
+        return np.ones_like(outputs)
 
 
 def _in_blocks(run: Callable[[slice], None], count: int) -> None:
@@ -92,14 +196,10 @@ def _in_blocks(run: Callable[[slice], None], count: int) -> None:
         list(pool.map(run, blocks))
 
 
-_controller: list[ThreadpoolController] = []
-
-
+@cache
 def _blas() -> ThreadpoolController:
-    # Looking for the loaded BLAS libraries takes milliseconds: once a process.
-    if not _controller:
-        _controller.append(ThreadpoolController())
-    return _controller[0]
+    """The loaded BLAS libraries; looking for them takes milliseconds: once a process."""
+    return ThreadpoolController()
 
 
 def _cores() -> int:
@@ -108,87 +208,7 @@ def _cores() -> int:
     return os.cpu_count() or 1
 
 
-def _folded(network: Network) -> Layers:
-    scale = np.float32(network.spec.w0 if network.spec.activation == "sine" else 1)
-    *hidden, (weight, bias) = network.layers
-    folded = [(w * scale, (b * scale)[:, None]) for w, b in hidden]
-    return [*folded, (weight, bias[:, None])]
-
-
-def _first(
-    network: Network, layers: Layers, points: Floats, charts: NDArray[np.int32] | None
-) -> Floats:
-    spec = network.spec
-    weight, bias = layers[0]
-    coordinates = points.T
-    if spec.conditioning == "scalar":
-        assert charts is not None
-        scalar = (2 * charts + 1).astype(np.float32) / np.float32(spec.charts) - np.float32(1)
-        coordinates = np.vstack([coordinates, scalar])
-    encoded = _encoded(spec, coordinates)
-    result: Floats = weight[:, : len(encoded)] @ encoded
-    if spec.conditioning == "embedding":
-        assert charts is not None
-        by_chart = weight[:, len(encoded) :] @ network.tensors["embedding"].T
-        result += by_chart[:, charts]
-    result += bias
-    return result
-
-
-def _encoded(spec: NetworkSpec, coordinates: Floats) -> Floats:
-    if spec.encoding == "identity":
-        return np.ascontiguousarray(coordinates)
-    angles = _frequencies(spec)[:, None] * coordinates[:, None, :]
-    waves = np.stack([np.sin(angles), np.cos(angles)], axis=2)
-    return waves.reshape(-1, coordinates.shape[1])
-
-
-def _through_encoding(spec: NetworkSpec, encoded: Floats, slope: Floats) -> Floats:
-    if spec.encoding == "identity":
-        return slope
-    shape = (3, spec.levels, 2, -1)
-    waves, slopes = encoded.reshape(shape), slope.reshape(shape)
-    turned = slopes[:, :, 0] * waves[:, :, 1] - slopes[:, :, 1] * waves[:, :, 0]
-    result: Floats = (turned * _frequencies(spec)[:, None]).sum(axis=1)
-    return result
-
-
-def _frequencies(spec: NetworkSpec) -> Floats:
-    return np.array([np.pi * 2**level for level in range(spec.levels)], np.float32)
-
-
-def _activated(spec: NetworkSpec, values: Floats) -> Floats:
-    if spec.activation == "sine":
-        return np.sin(values, out=values)
-    return np.maximum(values, 0, out=values)
-
-
-def _activation_slope(spec: NetworkSpec, before: Floats) -> Floats:
-    # The factor w0 of a sine layer is already in the folded weights.
-    return np.cos(before) if spec.activation == "sine" else (before > 0).astype(np.float32)
-
-
-def _output(spec: NetworkSpec, values: Floats) -> Floats:
-    if spec.output == "tanh":
-        return np.tanh(values)
-    if spec.output == "sigmoid":
-        values = np.tanh(np.float32(0.5) * values)
-        values += 1
-        values *= 0.5
-    return values
-
-
-def _output_slope(spec: NetworkSpec, outputs: Floats) -> Floats:
-    if spec.output == "tanh":
-        return 1 - outputs * outputs
-    if spec.output == "sigmoid":
-        return outputs * (1 - outputs)
-    return np.ones_like(outputs)
-
-
-def _checked_charts(
-    spec: NetworkSpec, count: int, charts: Integers | None
-) -> NDArray[np.int32] | None:
+def _checked_charts(spec: NetworkSpec, count: int, charts: Integers | None) -> Charts | None:
     if spec.conditioning == "none":
         return None
     if charts is None or charts.shape != (count,):

@@ -14,12 +14,15 @@ from numpy.typing import NDArray
 
 from nispcodec.decode.evaluate import evaluate, gradient
 from nispcodec.decode.marching import CORNERS, EDGES, polygonise
+from nispcodec.decode.newton import onto_surface
 from nispcodec.network import Network
 
 LIMIT = 1.02
 BLOCK = 4
 ROOT = 16
-NEWTON_STEPS = 3
+NEWTON_STEPS = 2
+# Vertices keep this share of a cell from grid points, where several would coincide.
+CLEARANCE = 0.01
 
 Ids = NDArray[np.int64]
 Floats = NDArray[np.float32]
@@ -37,34 +40,39 @@ class Surface:
 def extract(network: Network, resolution: int) -> Surface:
     """The zero set of the SDF network in the cube [-1.02, 1.02]^3 of the normalised frame.
 
-    `resolution` is the number of cells along an edge of the cube.
+    `resolution` is the least number of cells along an edge of the cube: it is rounded up, by an
+    eighth at most, so that blocks halve evenly and none reaches out of the cube.
     """
-    cell = 2 * LIMIT / resolution
-    blocks = _surface_blocks(network, resolution, cell)
-    values = _block_values(network, blocks, resolution, cell)
-    edges, ends, faces = _polygons(blocks, values)
-    positions = _on_zero_set(network, _crossings(edges, ends, cell), cell)
-    return Surface(positions, faces, cell)
-
-
-def _surface_blocks(network: Network, resolution: int, cell: float) -> Ids:
-    """Integer coordinates (b, 3) of the blocks of BLOCK^3 cells that may hold surface."""
     across = -(-resolution // BLOCK)
     levels = max(0, int(np.ceil(np.log2(across / ROOT))))
-    count = -(-across // 2**levels)
-    blocks = _lattice(count)
-    bound = None
+    root = -(-across // 2**levels)
+    cell = 2 * LIMIT / (root * 2**levels * BLOCK)
+    blocks = _surface_blocks(network, root, levels, cell)
+    values = _block_values(network, blocks, root * 2**levels, cell)
+    edges, ends, faces = _polygons(blocks, values)
+    crossings = _crossings(edges, ends, cell)
+    return Surface(onto_surface(network, crossings, cell / 2, NEWTON_STEPS), faces, cell)
+
+
+def _surface_blocks(network: Network, root: int, levels: int, cell: float) -> Ids:
+    """Integer coordinates (b, 3) of the blocks of BLOCK^3 cells that may hold surface.
+
+    A block is halved and kept while the field at its centre is no larger than it may become over
+    half the block's diagonal.
+    """
+    blocks = _lattice(root)
+    bound = _steepness(network, _centres(blocks, cell * BLOCK * 2**levels))
     for level in range(levels, -1, -1):
         size = cell * BLOCK * 2**level
-        centres = ((blocks + 0.5) * size - LIMIT).astype(np.float32)
-        if bound is None:
-            bound = _steepness(network, centres)
-        distance = np.abs(evaluate(network, centres)[:, 0])
+        distance = np.abs(evaluate(network, _centres(blocks, size))[:, 0])
         blocks = blocks[distance <= bound * size * np.sqrt(3) / 2]
         if level:
             blocks = (2 * blocks[:, None] + CORNERS).reshape(-1, 3)
-            blocks = blocks[(blocks < across).all(axis=1)]
     return blocks
+
+
+def _centres(blocks: Ids, size: float) -> Floats:
+    return ((blocks + 0.5) * size - LIMIT).astype(np.float32)
 
 
 def _lattice(count: int) -> Ids:
@@ -78,13 +86,12 @@ def _steepness(network: Network, points: Floats) -> float:
     return float(1.25 * max(1.0, np.percentile(slopes, 99)))
 
 
-def _block_values(network: Network, blocks: Ids, resolution: int, cell: float) -> Floats:
+def _block_values(network: Network, blocks: Ids, across: int, cell: float) -> Floats:
     """The field at each block's (BLOCK + 1)^3 grid points: (b, 5, 5, 5) float32.
 
     A point shared by several blocks has one value, bit for bit, or the surface would crack.
     """
-    across = -(-resolution // BLOCK) + 1
-    numbers = np.full((across,) * 3, -1, np.int32)
+    numbers = np.full((across + 1,) * 3, -1, np.int32)
     numbers[tuple(blocks.T)] = np.arange(len(blocks))
     inner = _lattice(BLOCK)
     own = _field(network, (blocks[:, None] * BLOCK + inner).reshape(-1, 3), cell)
@@ -158,23 +165,7 @@ def _polygons(blocks: Ids, values: Floats) -> tuple[Ids, Floats, NDArray[np.int3
 
 
 def _crossings(edges: Ids, ends: Floats, cell: float) -> Floats:
-    fraction = ends[:, 0] / (ends[:, 0] - ends[:, 1])
+    fraction = np.clip(ends[:, 0] / (ends[:, 0] - ends[:, 1]), CLEARANCE, 1 - CLEARANCE)
     grid = edges[:, :3].astype(np.float64)
     grid[np.arange(len(grid)), edges[:, 3]] += fraction
     return (grid * cell - LIMIT).astype(np.float32)
-
-
-def _on_zero_set(network: Network, positions: Floats, cell: float) -> Floats:
-    """Newton steps along the gradient, kept within half a cell and only while they help."""
-    start = positions
-    values, slopes = gradient(network, positions)
-    for _ in range(NEWTON_STEPS):
-        steepness = np.maximum((slopes * slopes).sum(axis=1, keepdims=True), 1e-6)
-        moved = positions - values[:, None] * slopes / steepness
-        moved = start + np.clip(moved - start, -cell / 2, cell / 2)
-        moved_values, moved_slopes = gradient(network, moved)
-        better = np.abs(moved_values) < np.abs(values)
-        positions = np.where(better[:, None], moved, positions)
-        values = np.where(better, moved_values, values)
-        slopes = np.where(better[:, None], moved_slopes, slopes)
-    return positions

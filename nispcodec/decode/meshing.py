@@ -6,10 +6,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from nispcodec.asset import IndexArray, TexturedMesh
+from nispcodec.decode.charting import vertex_charts
 from nispcodec.decode.components import ExtractionReport, spurious, without
 from nispcodec.decode.evaluate import evaluate
 from nispcodec.decode.extract import LIMIT, Surface, extract
-from nispcodec.decode.face_charts import face_charts
+from nispcodec.decode.seams import cut_along_seams
 from nispcodec.document import Document
 
 DEFAULT_RESOLUTION = 256
@@ -32,8 +33,7 @@ def textured_mesh(
         dropped=0 if keep_spurious else int(unwanted.sum()),
         dropped_faces=len(surface.faces) - len(cleaned.faces),
     )
-    charts = face_charts(document.chart, cleaned)
-    return _dressed(document, cleaned, charts), report
+    return _dressed(document, *_cut(document, cleaned)), report
 
 
 def default_resolution(document: Document) -> int:
@@ -53,6 +53,14 @@ def asset_uv(document: Document, points: Floats, charts: NDArray[np.integer]) ->
     uvs = evaluate(document.uv, points, charts if conditioned else None)
     placed = uvs * np.array(table.uv_scale, np.float32) + np.array(table.uv_offset, np.float32)
     return np.where(table.has_uv[charts][:, None], placed, np.float32(0))
+
+
+def _cut(document: Document, surface: Surface) -> tuple[Surface, IndexArray]:
+    """The surface with one chart a face, and those charts (m,)."""
+    if document.chart is None:
+        return surface, np.zeros(len(surface.faces), np.int32)
+    charts = vertex_charts(document.chart, surface)
+    return cut_along_seams(document.sdf, document.chart, surface, charts)
 
 
 def _dressed(document: Document, surface: Surface, charts: IndexArray) -> TexturedMesh:

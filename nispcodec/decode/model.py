@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from functools import cached_property
-
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
@@ -17,18 +15,21 @@ Integers = NDArray[np.int32]
 
 FRAMES = ("world", "normalised")
 PROJECTION_STEPS = 8
+FAR = 1e6
 
 
 class NispModel:
     """One asset, queryable at any point.
 
     Queries take points (n, 3), any n, in the frame named by `frame`: "world" (the asset's own
-    units) or "normalised". They raise QueryError for a wrong shape, NaN, infinity or an unknown
-    frame. Work is done in blocks on every core; memory is bounded beyond input and output.
+    units) or "normalised". They raise QueryError for a wrong shape, NaN, infinity, points more
+    than a million radii away, or an unknown frame. Work is done in blocks on every core, so memory
+    is bounded beyond input and output.
     """
 
     def __init__(self, document: Document) -> None:
         self.document = document
+        self._images: dict[int, Floats] = {}
 
     def sdf(self, points: ArrayLike, frame: str = "world") -> Floats:
         """Signed distance to the surface (n,) float32, negative inside, in the units of `frame`."""
@@ -60,25 +61,21 @@ class NispModel:
         return self._uv(normalised, self._charts(normalised) if charts is None else charts)
 
     def color(self, points: ArrayLike, frame: str = "world") -> Floats:
-        """Base colour (n, 4) float32 RGBA in [0, 1], sRGB-encoded.
+        """Base colour (n, 4) float32 RGBA in [0, 1]: RGB is sRGB-encoded, alpha linear.
 
-        RGB is the value stored in the base colour texture, interpolated as stored, times the
-        material's factor put into sRGB; alpha is linear: the texture's times the factor's.
+        The base colour texture at the point's UV, filtered and wrapped as its material says, times
+        the material's factor; the factor alone where there is no texture or no UV.
         """
-        from nispcodec.decode.color import base_color
-
         normalised = self._normalised(points, frame)
         charts = self._charts(normalised)
         uvs = self._uv(normalised, charts)
-        result = np.empty((len(normalised), 4), np.float32)
-        materials = self.document.charts.materials[charts]
-        textured = self.document.charts.has_uv[charts]
-        for index, has_uv in set(zip(materials.tolist(), textured.tolist(), strict=True)):
-            rows = (materials == index) & (textured == has_uv)
-            pixels = self._pixels(index) if has_uv else None
-            material = self.document.materials[index]
-            result[rows] = base_color(material, pixels, uvs[rows], int(rows.sum()))
-        return result
+        table = self.document.charts
+        # A face without UV looks nothing up: its material shows its factor, key -1 - material.
+        keys = np.where(table.has_uv, table.materials, -1 - table.materials)[charts]
+        colors = np.empty((len(normalised), 4), np.float32)
+        for key in np.unique(keys).tolist():
+            colors[keys == key] = self._base_color(key, uvs[keys == key])
+        return colors
 
     def project(self, points: ArrayLike, frame: str = "world") -> NDArray[np.float64]:
         """The points moved along the gradient onto the surface (n, 3) float64, in `frame`.
@@ -106,7 +103,7 @@ class NispModel:
         return textured_mesh(self.document, resolution, keep_spurious)[0]
 
     def _charts(self, normalised: Floats) -> Integers:
-        from nispcodec.decode.face_charts import predicted_charts
+        from nispcodec.decode.charting import predicted_charts
 
         return predicted_charts(self.document.chart, normalised)
 
@@ -115,17 +112,20 @@ class NispModel:
 
         return asset_uv(self.document, normalised, charts)
 
-    def _pixels(self, material: int) -> NDArray[np.uint8] | None:
-        used = self.document.materials[material].maps.get("base_color")
-        return None if used is None else self._textures[used.texture]
+    def _base_color(self, key: int, uvs: Floats) -> Floats:
+        from nispcodec.texture import base_color
 
-    @cached_property
-    def _textures(self) -> dict[int, NDArray[np.uint8]]:
-        from nispcodec.decode.color import decoded
+        material = self.document.materials[key if key >= 0 else -1 - key]
+        used = material.maps.get("base_color") if key >= 0 else None
+        image = None if used is None else self._image(used.texture)
+        return base_color(material, image, uvs)
 
-        maps = (material.maps.get("base_color") for material in self.document.materials)
-        wanted = {used.texture for used in maps if used is not None}
-        return {index: decoded(self.document.textures[index]) for index in wanted}
+    def _image(self, texture: int) -> Floats:
+        from nispcodec.texture import decode_image
+
+        if texture not in self._images:
+            self._images[texture] = decode_image(self.document.textures[texture])
+        return self._images[texture]
 
     def _normalised(self, points: ArrayLike, frame: str) -> Floats:
         if frame not in FRAMES:
@@ -135,9 +135,12 @@ class NispModel:
             raise QueryError(
                 f"points: expected numbers of shape (n, 3), found {array.dtype} of {array.shape}"
             )
-        if not np.isfinite(array).all():
-            row = int(np.argmin(np.isfinite(array).all(axis=1)))
-            raise QueryError(f"points: expected finite numbers, found {array[row]} in row {row}")
-        if frame == "world":
-            array = self.document.frame.to_normalised(array)
-        return array.astype(np.float32)
+        normalised = self.document.frame.to_normalised(array) if frame == "world" else array
+        near = (np.abs(normalised) < FAR).all(axis=1)
+        if not near.all():
+            row = int(np.argmin(near))
+            raise QueryError(
+                f"points: expected finite numbers within {FAR:g} radii of the asset, "
+                f"found {array[row].tolist()} in row {row}"
+            )
+        return normalised.astype(np.float32)

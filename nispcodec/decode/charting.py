@@ -1,0 +1,59 @@
+"""Which chart each vertex of an extracted surface lies on."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
+
+from nispcodec.decode.evaluate import classify
+from nispcodec.decode.extract import Surface
+from nispcodec.network import Network
+
+SPECK = 4
+ROUNDS = 3
+
+Charts = NDArray[np.int32]
+Pairs = NDArray[np.int64]
+
+
+def predicted_charts(network: Network | None, points: NDArray[np.float32]) -> Charts:
+    """The most likely chart at each point: (n, 3) float32, normalised frame -> (n,) int32."""
+    if network is None:
+        return np.zeros(len(points), np.int32)
+    return classify(network, points)
+
+
+def vertex_charts(network: Network | None, surface: Surface) -> Charts:
+    """The chart of each vertex (n,), specks of wrong chart voted away."""
+    charts = predicted_charts(network, surface.positions)
+    edges = unique_edges(surface.faces)
+    for _ in range(ROUNDS):
+        charts = _without_specks(charts, edges)
+    return charts
+
+
+def unique_edges(faces: NDArray[np.int32]) -> Pairs:
+    """The edges (e, 2) of the faces, each once, the lower vertex first."""
+    sides = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
+    keys = np.unique(sides.min(axis=1).astype(np.int64) << 32 | sides.max(axis=1))
+    return np.column_stack([keys >> 32, keys & 0xFFFFFFFF])
+
+
+def _without_specks(charts: Charts, edges: Pairs) -> Charts:
+    """Patches of one chart with fewer than SPECK vertices take the chart of most neighbours."""
+    a, b = edges.T
+    same = charts[a] == charts[b]
+    size = len(charts)
+    graph = coo_array((same[same], (a[same], b[same])), shape=(size, size))
+    count, patches = connected_components(graph, directed=False)
+    speck = (np.bincount(patches, minlength=count) < SPECK)[patches]
+    borders = np.concatenate([edges[~same], edges[~same][:, ::-1]])
+    borders = borders[speck[borders[:, 0]] & ~speck[borders[:, 1]]]
+    votes = patches[borders[:, 0]].astype(np.int64) << 32 | charts[borders[:, 1]]
+    ballots, counts = np.unique(votes, return_counts=True)
+    winner_last = ballots[np.argsort(counts, kind="stable")]
+    elected = np.full(count, -1, np.int32)
+    elected[winner_last >> 32] = winner_last & 0xFFFFFFFF
+    return np.where(elected[patches] >= 0, elected[patches], charts)

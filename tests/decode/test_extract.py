@@ -1,0 +1,85 @@
+"""Extraction of surfaces with known answers."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from nispcodec.decode.components import components, spurious, without
+from nispcodec.decode.evaluate import evaluate
+from nispcodec.decode.extract import LIMIT, Surface, extract
+from nispcodec.network import Network
+from tests import tiny
+from tests.decode.surfaces import areas, assert_sound
+
+
+@pytest.fixture(scope="module")
+def ball() -> Network:
+    return tiny.sphere()
+
+
+@pytest.mark.parametrize("resolution", [8, 30, 64, 101])
+def test_sphere_is_sound_and_on_the_zero_set(ball: Network, resolution: int) -> None:
+    surface = extract(ball, resolution)
+    assert_sound(surface.positions, surface.faces)
+    assert np.abs(evaluate(ball, surface.positions)).max() < 1e-4
+    assert components(surface)[0] == 1
+    expected = 4 * np.pi * 0.6**2
+    assert areas(surface.positions, surface.faces).sum() == pytest.approx(
+        expected, rel=3 / resolution**2 + 1e-3
+    )
+
+
+def test_octahedron_is_sound_at_its_edges_and_corners() -> None:
+    # Corners of the octahedron fall on grid points: crossings with several edges at one place.
+    surface = extract(tiny.octahedron(LIMIT / 2), 64)
+    assert_sound(surface.positions, surface.faces)
+    assert components(surface)[0] == 1
+
+
+def test_faces_look_outwards(ball: Network) -> None:
+    surface = extract(ball, 32)
+    a, b, c = surface.positions[surface.faces].transpose(1, 0, 2)
+    assert (np.einsum("ij,ij->i", np.cross(b - a, c - a), a + b + c) > 0).all()
+
+
+def test_blocks_give_the_same_surface_as_the_full_grid(ball: Network) -> None:
+    count = 40
+    axis = (np.arange(count + 1) * (2 * LIMIT / count) - LIMIT).astype(np.float32)
+    grid = np.stack(np.meshgrid(axis, axis, axis, indexing="ij"), axis=-1).reshape(-1, 3)
+    inside = (evaluate(ball, grid) < 0).reshape((count + 1,) * 3)
+    crossed = sum(int(np.diff(inside, axis=axis).sum()) for axis in range(3))
+    assert len(extract(ball, count).positions) == crossed
+
+
+def test_empty_field_gives_no_faces() -> None:
+    surface = extract(tiny.relu_network([(np.eye(3), np.zeros(3)), (np.zeros((1, 3)), [1.0])]), 32)
+    assert surface.positions.shape == (0, 3)
+    assert surface.faces.shape == (0, 3)
+
+
+def test_steep_field_loses_nothing() -> None:
+    slope = 3.0
+    axes = np.vstack([np.eye(3), -np.eye(3)])
+    steep = tiny.relu_network(
+        [(axes, np.zeros(6)), (np.full((1, 6), slope), np.array([-0.7 * slope]))]
+    )
+    gentle = tiny.octahedron(0.7)
+    assert len(extract(steep, 40).faces) == len(extract(gentle, 40).faces)
+
+
+def test_small_real_bodies_stay(ball: Network) -> None:
+    tiny_ball = tiny.octahedron(0.05)
+    surface = extract(tiny_ball, 64)
+    unwanted, _ = spurious(tiny_ball, surface)
+    assert not unwanted.any()
+
+
+def test_without_renumbers() -> None:
+    positions = np.arange(18, dtype=np.float32).reshape(6, 3)
+    surface = Surface(positions, np.array([[0, 1, 2], [3, 4, 5]], np.int32), 0.1)
+    count, labels = components(surface)
+    assert count == 2
+    kept = without(surface, np.array([True, False]), labels)
+    assert np.array_equal(kept.positions, positions[3:])
+    assert np.array_equal(kept.faces, [[0, 1, 2]])
