@@ -50,7 +50,17 @@ def test_distortion_of_a_known_map() -> None:
     mesh = textured(positions, np.array([[0, 1, 2], [0, 2, 3]]), uvs, "sheet")
     surface = Surface(mesh, mesh.positions)
     np.testing.assert_allclose(triangle_distortions(surface), 2)
-    assert distortion_summary(surface) == pytest.approx({"mean": 2, "max": 2, "std": 0})
+    assert distortion_summary(surface) == pytest.approx(
+        {"mean": 2, "max": 2, "std": 0, "collapsed": 0}
+    )
+
+
+def test_collapsed_uv_is_counted_apart() -> None:
+    mesh = plane(cells=1)
+    uvs = np.where(np.arange(4)[:, None] == 1, mesh.uvs[0], mesh.uvs)
+    summary = distortion_summary(surface_of(textured(mesh.positions, mesh.faces, uvs, "half")))
+    assert summary["collapsed"] == 0.5
+    assert np.isfinite(list(summary.values())).all()
 
 
 def test_mirrored_uv_has_the_same_distortion() -> None:
