@@ -26,9 +26,11 @@ def write_mesh(mesh: TexturedMesh, path: Path) -> list[Path]:
     """Write the mesh in the format of the path's suffix -> the files written, `path` last.
 
     An OBJ puts its MTL and images beside it. Each file is written under another name and then
-    renamed. Raises MeshError for an unknown suffix, OSError when writing fails.
+    renamed. Raises MeshError for an unknown suffix or no faces, OSError when writing fails.
     """
     path = Path(path)
+    if not len(mesh.faces):
+        raise MeshError(f"{path}: expected a mesh with faces, found none")
     written = []
     for name, data in _files(mesh, path).items():
         written.append(path.with_name(name))

@@ -34,6 +34,7 @@ class _Builder:
     def __init__(self) -> None:
         self.buffer = bytearray()
         self.tree: Json = {"asset": {"version": "2.0", "generator": "nispcodec"}}
+        self.images: dict[int, int] = {}
 
     def build(self, mesh: TexturedMesh) -> bytes:
         normals = vertex_normals(mesh)
@@ -127,7 +128,7 @@ class _Builder:
         sampler = {"magFilter": magnify, "minFilter": minify, "wrapS": wrap_s, "wrapT": wrap_t}
         texture = textures[used.texture]
         item: Json = {"sampler": self.add("samplers", sampler)}
-        image = self.image(texture)
+        image = self.image(used.texture, texture)
         if texture.mime == "image/webp":
             item["extensions"] = {WEBP: {"source": image}}
             self.tree["extensionsUsed"] = self.tree["extensionsRequired"] = [WEBP]
@@ -135,13 +136,12 @@ class _Builder:
             item["source"] = image
         return {"index": self.add("textures", item)}
 
-    def image(self, texture: Texture) -> int:
-        for index, item in enumerate(self.tree.get("images", [])):
-            if item["name"] == texture.name:
-                return index
-        data, mime = _embeddable(texture)
-        view = self.view(data)
-        return self.add("images", {"name": texture.name, "mimeType": mime, "bufferView": view})
+    def image(self, number: int, texture: Texture) -> int:
+        if number not in self.images:
+            data, mime = _embeddable(texture)
+            item = {"name": texture.name, "mimeType": mime, "bufferView": self.view(data)}
+            self.images[number] = self.add("images", item)
+        return self.images[number]
 
 
 def _groups(mesh: TexturedMesh) -> Iterable[tuple[int, bool, NDArray[np.intp]]]:

@@ -9,20 +9,24 @@ from numpy.typing import NDArray
 
 from nispcodec.asset import Material, TexturedMesh, TextureMap
 
+# Occlusion and metallic-roughness share one image in glTF; MTL has no words for that.
 KEYWORDS = {
     "base_color": ("map_Kd",),
     "normal": ("norm", "map_Bump"),
     "emissive": ("map_Ke",),
-    "occlusion": ("map_Ka",),
-    "metallic_roughness": ("map_Pr", "map_Pm"),
 }
 
 
 def obj_files(mesh: TexturedMesh, stem: str) -> dict[str, bytes]:
-    """File name -> bytes of STEM.obj, STEM.mtl and one STEM_NAME for every texture."""
-    images = _image_names(mesh, stem)
+    """File name -> bytes of STEM.obj, STEM.mtl and one STEM_NAME for every texture in use.
+
+    Occlusion and metallic-roughness maps are left out, and images used by nothing else with them.
+    """
+    images = [f"{stem}_{name}" for name in _unique([_plain(t.name) for t in mesh.textures])]
     names = _unique([_plain(material.name) for material in mesh.materials])
-    files = {image: texture.data for image, texture in zip(images, mesh.textures, strict=True)}
+    slots = [slots for material in mesh.materials for slots in material.maps.items()]
+    wanted = {used.texture for slot, used in slots if slot in KEYWORDS}
+    files = {images[index]: mesh.textures[index].data for index in sorted(wanted)}
     materials = zip(mesh.materials, names, strict=True)
     mtl = "\n".join(_mtl(material, name, images) for material, name in materials)
     return files | {
@@ -59,7 +63,7 @@ def _mtl(material: Material, name: str, images: list[str]) -> str:
         "Ke {:.6g} {:.6g} {:.6g}".format(*material.emissive),
     ]
     for slot, used in material.maps.items():
-        lines += [_map(keyword, used, images) for keyword in KEYWORDS[slot]]
+        lines += [_map(keyword, used, images) for keyword in KEYWORDS.get(slot, ())]
     return "\n".join(lines) + "\n"
 
 
@@ -68,10 +72,6 @@ def _map(keyword: str, used: TextureMap, images: list[str]) -> str:
     if keyword == "map_Bump" and used.strength != 1:
         options += f" -bm {used.strength:.6g}"
     return f"{keyword}{options} {images[used.texture]}"
-
-
-def _image_names(mesh: TexturedMesh, stem: str) -> list[str]:
-    return _unique([f"{stem}_{_plain(texture.name)}" for texture in mesh.textures])
 
 
 def _plain(name: str) -> str:
