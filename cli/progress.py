@@ -75,8 +75,8 @@ class Bars:
         from rich.progress import BarColumn, Progress, TextColumn
 
         self._progress = Progress(
-            TextColumn("{task.description:<6}"),
-            BarColumn(bar_width=24),
+            TextColumn("{task.description}"),
+            BarColumn(bar_width=10),
             TextColumn("{task.fields[text]}"),
             console=Console(stderr=True),
         )
@@ -99,12 +99,12 @@ class Bars:
         from rich.progress import TaskID
 
         if update.note:
-            self._progress.console.print(f"{update.network or 'nisp'}: {update.note}")
+            self._progress.console.print(described(update))
         if update.network not in self._tasks:
-            name = update.network or "nisp"
-            self._tasks[update.network] = self._progress.add_task(name, total=None, text="")
+            self._tasks[update.network] = self._progress.add_task("", total=None, text="")
         self._progress.update(
             TaskID(self._tasks[update.network]),
+            description=_head(update),
             total=update.steps or None,
             completed=update.step,
             text=" · ".join(_facts(update)),
@@ -112,24 +112,27 @@ class Bars:
 
 
 def described(update: Update) -> str:
-    """One plain line: `uv fit: step 100/2000, loss 0.001, held-out error 3.1e-04, 12 s left`."""
-    head = " ".join(word for word in (update.network, update.stage) if word)
-    facts = ", ".join([*_facts(update)[1:], *([update.note] if update.note else [])])
-    return f"{head}: {facts}" if facts else head
+    """One plain line: `uv fit: 100/2000, loss 1.0e-03, held-out 3.1e-04, 12 s left`."""
+    facts = ", ".join([*_facts(update), *([update.note] if update.note else [])])
+    return f"{_head(update)}: {facts}" if facts else _head(update)
+
+
+def _head(update: Update) -> str:
+    return f"{update.network} {update.stage}".strip()
 
 
 def _facts(update: Update) -> list[str]:
     known = {
-        "step {}": f"{update.step}/{update.steps}" if update.steps else None,
+        "{}": f"{update.step}/{update.steps}" if update.steps else None,
         "loss {}": _number(update.loss),
-        "held-out error {}": _number(update.error),
+        "held-out {}": _number(update.error),
         "{} left": duration(update.seconds_left) if update.seconds_left is not None else None,
     }
-    return [update.stage, *(text.format(value) for text, value in known.items() if value)]
+    return [text.format(value) for text, value in known.items() if value]
 
 
 def _number(value: float | None) -> str | None:
-    return None if value is None else f"{value:.2e}"
+    return None if value is None else f"{value:.1e}"
 
 
 def duration(seconds: float) -> str:

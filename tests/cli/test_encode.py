@@ -126,7 +126,7 @@ def test_missing_texture_is_a_warning(encoder, mesh: Path, tmp_path: Path) -> No
 
 def test_line_says_what_is_known() -> None:
     assert described(UPDATES[1]) == (
-        "sdf fit: step 10/100, loss 5.00e-01, held-out error 1.00e-03, 1 min 15 s left"
+        "sdf fit: 10/100, loss 5.0e-01, held-out 1.0e-03, 1 min 15 s left"
     )
     assert described(UPDATES[0]) == "samples"
     assert described(UPDATES[2]).endswith("diverged at step 11, retrying")
@@ -148,7 +148,7 @@ def test_bars_keep_one_row_a_network(capsys) -> None:
             show(update)
     text = capsys.readouterr().err
     assert "diverged at step 11" in text
-    assert text.count("held-out error 1.00e-03") <= 1
+    assert text.count("held-out 1.0e-03") <= 1
 
 
 def test_duration() -> None:
