@@ -60,13 +60,15 @@ class TextureShelf:
 
 def _decoded(data: bytes, place: str) -> PIL.Image.Image:
     """Decode every pixel, so that a damaged image is found now and not by the viewer."""
+    PIL.Image.init()  # else only the few common formats are registered
+    formats = [name for name in (*_KEPT, *_CONVERTED) if name in PIL.Image.OPEN]
     try:
         with warnings.catch_warnings():
             # Pillow's guard against decompression bombs only warns below twice its limit.
             warnings.simplefilter("ignore")
             warnings.simplefilter("error", PIL.Image.DecompressionBombWarning)
-            PIL.Image.open(io.BytesIO(data), formats=[*_KEPT, *_CONVERTED]).verify()
-            image = PIL.Image.open(io.BytesIO(data), formats=[*_KEPT, *_CONVERTED])
+            PIL.Image.open(io.BytesIO(data), formats=formats).verify()
+            image = PIL.Image.open(io.BytesIO(data), formats=formats)
             image.load()
             return image
     except (*_BROKEN, PIL.Image.DecompressionBombWarning, PIL.Image.DecompressionBombError) as why:

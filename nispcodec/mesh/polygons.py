@@ -10,6 +10,8 @@ Indices = NDArray[np.int64]
 
 # Ear clipping takes quadratic time or worse; larger polygons than any modeller draws become fans.
 MAX_CLIPPED = 4096
+# Areas below this share of the whole are rounding.
+ROUNDING = 1e-12
 
 
 def triangulate(points: Points, sizes: Indices) -> tuple[Indices, Indices]:
@@ -88,30 +90,35 @@ def _clip_ears(flat: Points) -> Indices:
 
 
 def _find_ear(flat: Points, left: list[int]) -> int:
-    """The place in `left` of a corner whose triangle is positive and holds no other corner.
+    """The place in `left` of a corner that can go: its triangle is positive and holds no other.
 
-    A polygon that crosses itself may have none; then its most positive corner goes.
+    What remains must keep an area, or points along an edge would end in a triangle without one.
+    A polygon that crosses itself may have no such corner; then its most positive one goes.
     """
     corners = flat[left]
     before, after = np.roll(corners, 1, axis=0), np.roll(corners, -1, axis=0)
     areas = _twice_area(before, corners, after)
-    reflex = corners[areas <= 0]
+    total = float(_twice_area(corners[0], corners, after).sum())
+    floor = ROUNDING * abs(total)
+    blocking = corners[areas <= floor]
     for at in np.argsort(-areas, kind="stable"):
-        if areas[at] <= 0:
+        if areas[at] <= floor:
             break
-        if not _holds_any(before[at], corners[at], after[at], reflex):
+        keeps_area = total - areas[at] > floor
+        if keeps_area and not _holds_any((before[at], corners[at], after[at]), blocking, floor):
             return int(at)
     return int(areas.argmax())
 
 
-def _holds_any(a: Points, b: Points, c: Points, points: Points) -> bool:
+def _holds_any(triangle: tuple[Points, Points, Points], points: Points, floor: float) -> bool:
     """Whether a point other than the corners lies in the triangle or on its border."""
+    a, b, c = triangle
     inside = (
-        (_twice_area(a, b, points) >= 0)
-        & (_twice_area(b, c, points) >= 0)
-        & (_twice_area(c, a, points) >= 0)
+        (_twice_area(a, b, points) >= -floor)
+        & (_twice_area(b, c, points) >= -floor)
+        & (_twice_area(c, a, points) >= -floor)
     )
-    corner = (points[:, None] == np.stack([a, b, c])).all(axis=2).any(axis=1)
+    corner = (points[:, None] == np.stack(triangle)).all(axis=2).any(axis=1)
     return bool((inside & ~corner).any())
 
 

@@ -19,17 +19,17 @@ def logical_lines(data: bytes) -> Iterator[tuple[int, bytes]]:
     """
     data = data.removeprefix(_BYTE_ORDER_MARK).replace(b"\r\n", b"\n").replace(b"\r", b"\n")
     parts: list[bytes] = []
-    for number, raw in enumerate(data.split(b"\n"), 1):
+    for number, raw in enumerate([*data.split(b"\n"), b""], 1):
         line = (_COMMENT.sub(b"", raw) if b"#" in raw else raw).strip()
         if line.endswith(b"\\"):
             parts.append(line[:-1])
-        elif parts:
-            yield number - len(parts), b" ".join([*parts, line])
+            continue
+        first = number - len(parts)
+        if parts:
+            line = b" ".join([*parts, line]).strip()
             parts = []
-        elif line:
-            yield number, line
-    if parts:
-        yield number + 1 - len(parts), b" ".join(parts)
+        if line:
+            yield first, line
 
 
 def text(raw: bytes) -> str:

@@ -1,0 +1,88 @@
+from __future__ import annotations
+
+import io
+
+import numpy as np
+import PIL.Image
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from nispcodec.errors import MeshError
+from nispcodec.mesh.images import TextureShelf
+from tests.mesh.files import image, outcome
+
+
+def shelf() -> tuple[TextureShelf, list[str]]:
+    warnings: list[str] = []
+    return TextureShelf(warnings), warnings
+
+
+@pytest.mark.parametrize(
+    ("format", "mime", "name"),
+    [
+        ("PNG", "image/png", "a.png"),
+        ("JPEG", "image/jpeg", "a.jpg"),
+        ("WEBP", "image/webp", "a.webp"),
+        ("AVIF", "image/avif", "a.avif"),
+    ],
+)
+def test_web_formats_keep_their_bytes_whatever_their_name(format: str, mime: str, name: str):
+    textures, warnings = shelf()
+    textures.add("some/a.dat", image(format), "a.dat")
+    (texture,) = textures.textures
+    assert (texture.data, texture.mime, texture.name) == (image(format), mime, name)
+    assert warnings == []
+
+
+@pytest.mark.parametrize("format", ["TGA", "BMP", "TIFF", "GIF"])
+def test_other_formats_become_png_with_a_warning(format: str):
+    textures, warnings = shelf()
+    textures.add("a.x", image(format), "a.x")
+    (texture,) = textures.textures
+    assert (texture.mime, texture.name) == ("image/png", "a.png")
+    pixels = np.asarray(PIL.Image.open(io.BytesIO(texture.data)).convert("RGB"))
+    assert (pixels == (200, 30, 30)).all()
+    assert warnings == [f"a.x: a {format} image, converted to PNG"]
+
+
+def test_equal_bytes_are_one_texture_and_equal_names_stay_apart():
+    textures, _ = shelf()
+    added = [
+        textures.add(name, image(color=color), name)
+        for name, color in [("x/a.png", (1, 1, 1)), ("y/A.png", (2, 2, 2)), ("b.png", (1, 1, 1))]
+    ]
+    assert added == [0, 1, 0]
+    assert [texture.name for texture in textures.textures] == ["a.png", "A_2.png"]
+
+
+@pytest.mark.parametrize("name", ["../../evil.png", "C:\\x\\evil.png", "/evil.png", "evil.png"])
+def test_names_are_bare(name: str):
+    textures, _ = shelf()
+    textures.add(name, image(), name)
+    assert textures.textures[0].name == "evil.png"
+
+
+@pytest.mark.parametrize("format", ["PNG", "JPEG", "WEBP"])
+def test_a_damaged_image_is_an_error_that_names_the_file(format: str):
+    noise = np.random.default_rng(0).integers(0, 255, (64, 64, 3), dtype=np.uint8)
+    buffer = io.BytesIO()
+    PIL.Image.fromarray(noise).save(buffer, format)
+    whole = buffer.getvalue()
+    for damaged in (whole[: len(whole) // 2], b"not an image", b""):
+        with pytest.raises(MeshError, match=r"wood\.x: expected an image"):
+            shelf()[0].add("wood.x", damaged, "wood.x")
+
+
+def test_an_image_bomb_is_refused():
+    buffer = io.BytesIO()
+    PIL.Image.new("1", (20_000, 20_000)).save(buffer, "PNG")
+    with pytest.raises(MeshError, match=r"bomb\.png: expected an image"):
+        shelf()[0].add("bomb.png", buffer.getvalue(), "bomb.png")
+
+
+@given(st.binary(max_size=100), st.integers(0, 60))
+def test_any_bytes_give_a_texture_or_a_mesh_error(noise: bytes, at: int):
+    for data in (noise, image()[:at] + noise + image()[at + len(noise) :]):
+        found = outcome(shelf()[0].add, "a.png", data, "a.png")
+        assert found == 0 or str(found).startswith("a.png: expected an image")
