@@ -18,16 +18,17 @@ if TYPE_CHECKING:
 @click.command("compare", short_help="Measure a decode against the original.")
 @click.argument("original", type=click.Path(path_type=Path))
 @click.argument("decoded", type=click.Path(path_type=Path))
-@click.option("--resolution", type=click.IntRange(8, 2048), default=256, show_default=True)
+@click.option("--resolution", type=click.IntRange(8, 2048), help="As for decode.")
 @click.option("--samples", type=click.IntRange(100), default=100_000, show_default=True)
 @click.option("--seed", type=click.IntRange(0), default=0, show_default=True)
 @click.option("--json", "as_json", is_flag=True, help="As JSON.")
 def command(
-    original: Path, decoded: Path, resolution: int, samples: int, seed: int, as_json: bool
+    original: Path, decoded: Path, resolution: int | None, samples: int, seed: int, as_json: bool
 ) -> None:
     """Measure DECODED (a .nisp or a mesh file) against the mesh file ORIGINAL.
 
-    Distances are in the normalised frame of the original. A .nisp is decoded at --resolution.
+    Distances are in the normalised frame of the original. A .nisp is decoded as `nisp decode`
+    does, and its chart accuracy is told when it has as many charts as the original.
 
     \b
     Example: nisp compare model.obj model.nisp
@@ -56,7 +57,7 @@ def _compare_mesh(original: TexturedMesh, path: Path, how: dict[str, Any]) -> Re
 
 
 def _compare_model(
-    original: TexturedMesh, path: Path, resolution: int, how: dict[str, Any]
+    original: TexturedMesh, path: Path, resolution: int | None, how: dict[str, Any]
 ) -> Report:
     import nispcodec
     from nispcodec.mesh.charts import split_charts

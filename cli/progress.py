@@ -6,37 +6,24 @@ import sys
 import time
 from collections.abc import Iterator
 from contextlib import AbstractContextManager, contextmanager, nullcontext
+from math import isnan
 from types import TracebackType
-from typing import Protocol
+from typing import TYPE_CHECKING
 
 import click
+
+if TYPE_CHECKING:
+    from nispcodec.progress import Listener, Progress
 
 PLAIN_INTERVAL = 5.0
 
 
-class Update(Protocol):
-    """What the encoder tells: see `nispcodec.encoder.Progress`. `network` is "" for the whole."""
-
-    network: str
-    stage: str
-    step: int
-    steps: int
-    loss: float | None
-    error: float | None
-    seconds_left: float | None
-    note: str
-
-
-class Show(Protocol):
-    """Takes the encoder's updates."""
-
-    def __call__(self, update: Update) -> None: ...
-
-
-def encode_progress(quiet: bool) -> AbstractContextManager[Show | None]:
+def encode_progress(quiet: bool) -> AbstractContextManager[Listener]:
     """Bars on a terminal, a line every few seconds elsewhere, nothing when quiet."""
+    from nispcodec.progress import silent
+
     if quiet:
-        return nullcontext(None)
+        return nullcontext(silent)
     return Bars() if sys.stderr.isatty() else nullcontext(Lines())
 
 
@@ -58,7 +45,7 @@ class Lines:
     def __init__(self) -> None:
         self._shown: dict[str, tuple[str, float]] = {}
 
-    def __call__(self, update: Update) -> None:
+    def __call__(self, update: Progress) -> None:
         """Print the update if it is worth a line."""
         stage, when = self._shown.get(update.network, ("", 0.0))
         now = time.monotonic()
@@ -72,18 +59,19 @@ class Bars:
 
     def __init__(self) -> None:
         from rich.console import Console
-        from rich.progress import BarColumn, Progress, TextColumn
+        from rich.progress import BarColumn, TextColumn
+        from rich.progress import Progress as Rows
 
-        self._progress = Progress(
-            TextColumn("{task.description}"),
+        self._rows = Rows(
+            TextColumn("{task.description}", markup=False),
             BarColumn(bar_width=10),
-            TextColumn("{task.fields[text]}"),
+            TextColumn("{task.fields[text]}", markup=False),
             console=Console(stderr=True),
         )
         self._tasks: dict[str, int] = {}
 
-    def __enter__(self) -> Show:
-        self._progress.start()
+    def __enter__(self) -> Listener:
+        self._rows.start()
         return self
 
     def __exit__(
@@ -92,17 +80,17 @@ class Bars:
         value: BaseException | None,
         trace: TracebackType | None,
     ) -> None:
-        self._progress.stop()
+        self._rows.stop()
 
-    def __call__(self, update: Update) -> None:
+    def __call__(self, update: Progress) -> None:
         """Move the bar of the update's network; a note stays above the bars."""
         from rich.progress import TaskID
 
         if update.note:
-            self._progress.console.print(described(update))
+            self._rows.console.print(described(update), markup=False)
         if update.network not in self._tasks:
-            self._tasks[update.network] = self._progress.add_task("", total=None, text="")
-        self._progress.update(
+            self._tasks[update.network] = self._rows.add_task("", total=None, text="")
+        self._rows.update(
             TaskID(self._tasks[update.network]),
             description=_head(update),
             total=update.steps or None,
@@ -111,28 +99,28 @@ class Bars:
         )
 
 
-def described(update: Update) -> str:
+def described(update: Progress) -> str:
     """One plain line: `uv fit: 100/2000, loss 1.0e-03, held-out 3.1e-04, 12 s left`."""
     facts = ", ".join([*_facts(update), *([update.note] if update.note else [])])
     return f"{_head(update)}: {facts}" if facts else _head(update)
 
 
-def _head(update: Update) -> str:
+def _head(update: Progress) -> str:
     return f"{update.network} {update.stage}".strip()
 
 
-def _facts(update: Update) -> list[str]:
+def _facts(update: Progress) -> list[str]:
     known = {
         "{}": f"{update.step}/{update.steps}" if update.steps else None,
         "loss {}": _number(update.loss),
         "held-out {}": _number(update.error),
-        "{} left": duration(update.seconds_left) if update.seconds_left is not None else None,
+        "{} left": None if isnan(update.seconds_left) else duration(update.seconds_left),
     }
     return [text.format(value) for text, value in known.items() if value]
 
 
-def _number(value: float | None) -> str | None:
-    return None if value is None else f"{value:.1e}"
+def _number(value: float) -> str | None:
+    return None if isnan(value) else f"{value:.1e}"
 
 
 def duration(seconds: float) -> str:

@@ -1,7 +1,6 @@
 from __future__ import annotations
 
 import json
-from dataclasses import dataclass
 from pathlib import Path
 
 import pytest
@@ -10,27 +9,15 @@ from nispcodec_cli.progress import Bars, Lines, described, duration
 import nispcodec
 from nispcodec.decode.model import NispModel
 from nispcodec.errors import FitError
+from nispcodec.progress import Progress
 from tests import tiny
 from tests.cli.conftest import nisp
 
-
-@dataclass
-class Update:
-    network: str = "uv"
-    stage: str = "fit"
-    step: int = 0
-    steps: int = 0
-    loss: float | None = None
-    error: float | None = None
-    seconds_left: float | None = None
-    note: str = ""
-
-
 UPDATES = [
-    Update("", "samples"),
-    Update("sdf", step=10, steps=100, loss=0.5, error=1e-3, seconds_left=75),
-    Update("sdf", step=11, steps=100, loss=0.4, note="diverged at step 11, retrying"),
-    Update("uv", step=1, steps=100),
+    Progress(stage="samples"),
+    Progress("sdf", "fit", step=10, steps=100, loss=0.5, error=1e-3, seconds_left=75),
+    Progress("sdf", "fit", step=11, steps=100, loss=0.4, note="diverged at step 11, retrying"),
+    Progress("uv", "fit", step=1, steps=100),
 ]
 
 
@@ -40,9 +27,9 @@ def encoder(monkeypatch):
     seen = {}
 
     def install(outcome):
-        def encode(mesh, config, progress=None):
+        def encode(mesh, config, progress):
             seen.update(mesh=mesh, config=config)
-            for update in UPDATES if progress else ():
+            for update in UPDATES:
                 progress(update)
             if isinstance(outcome, BaseException):
                 raise outcome
@@ -135,9 +122,9 @@ def test_line_says_what_is_known() -> None:
 def test_lines_come_for_stages_and_notes_only_while_time_is_short(capsys) -> None:
     show = Lines()
     for step in range(100):
-        show(Update("sdf", step=step, steps=100))
-    show(Update("sdf", "quantise"))
-    show(Update("sdf", "quantise", note="hot"))
+        show(Progress("sdf", "fit", step=step, steps=100))
+    show(Progress("sdf", "quantise"))
+    show(Progress("sdf", "quantise", note="hot"))
     lines = capsys.readouterr().err.splitlines()
     assert [line.split(":")[0] for line in lines] == ["sdf fit", "sdf quantise", "sdf quantise"]
 
