@@ -55,6 +55,8 @@ def write_container(sections: Iterable[tuple[str, bool, bytes]]) -> bytes:
     `FormatError` for a code that is not four of A-Z and 0-9, and beyond the caps.
     """
     rows = sorted(sections)
+    if len(rows) > MAX_SECTIONS:
+        raise FormatError("header", "section count", f"1 to {MAX_SECTIONS}", len(rows))
     offset = HEADER_SIZE + ENTRY_SIZE * len(rows)
     budget = MAX_UNPACKED
     table, payloads = b"", []

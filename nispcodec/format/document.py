@@ -52,28 +52,7 @@ def pack(document: Document, coding: str | None = None) -> bytes:
 
 def unpack(data: bytes) -> Document:
     """A file's bytes -> its document. Raises `FormatError` and nothing else, whatever the bytes."""
-    entries = _by_code(read_container(data))
-    meta = metadata.decode(_required(entries, META))
-    networks = weights.decode(meta.specs, _required(entries, NETS))
-    if "sdf" not in networks:
-        raise FormatError(META, "networks.sdf", "present", "absent")
-    with located(META, "document"):
-        return Document(
-            frame=meta.frame,
-            charts=meta.charts,
-            materials=meta.materials,
-            textures=_read_textures(meta, entries),
-            sdf=networks["sdf"],
-            chart=networks.get("chart"),
-            uv=networks.get("uv"),
-            shell=meta.shell,
-            info=_read_info(entries),
-            extra={
-                code: bytes(content(entry))
-                for code, entry in entries.items()
-                if code not in KNOWN_SECTIONS
-            },
-        )
+    return _parse(data)[0]
 
 
 def inspect(data: bytes) -> list[SectionInfo]:
@@ -81,12 +60,9 @@ def inspect(data: bytes) -> list[SectionInfo]:
 
     Raises `FormatError` as `unpack` does.
     """
-    entries = _by_code(read_container(data))
-    meta = metadata.decode(_required(entries, META))
-    parts: dict[str, dict[str, int]] = {
-        NETS: weights.sizes(meta.specs, _required(entries, NETS)),
-        TXTR: {name: length for name, _, length in meta.textures},
-    }
+    document, entries, lengths = _parse(data)
+    images = {texture.name: len(texture.data) for texture in document.textures}
+    parts: dict[str, Mapping[str, int]] = {NETS: lengths, TXTR: images}
     return [
         SectionInfo(
             code=entry.code,
@@ -99,6 +75,30 @@ def inspect(data: bytes) -> list[SectionInfo]:
         )
         for entry in entries.values()
     ]
+
+
+def _parse(data: bytes) -> tuple[Document, dict[str, Entry], dict[str, int]]:
+    """Document, table entries by code, bytes of each network in NETS."""
+    entries = _by_code(read_container(data))
+    meta = metadata.decode(_required(entries, META))
+    networks, lengths = weights.decode(meta.specs, _required(entries, NETS))
+    textures = _read_textures(meta, entries)
+    info = _read_info(entries)
+    unknown = {code: entry for code, entry in entries.items() if code not in KNOWN_SECTIONS}
+    with located(META, "document"):
+        document = Document(
+            frame=meta.frame,
+            charts=meta.charts,
+            materials=meta.materials,
+            textures=textures,
+            sdf=networks["sdf"],
+            chart=networks.get("chart"),
+            uv=networks.get("uv"),
+            shell=meta.shell,
+            info=info,
+            extra={code: bytes(content(entry)) for code, entry in unknown.items()},
+        )
+    return document, entries, lengths
 
 
 def _by_code(entries: list[Entry]) -> dict[str, Entry]:

@@ -25,6 +25,8 @@ def decode(record: Record, charts: int) -> dict[str, NetworkSpec]:
         if key in record
     }
     record.finish()
+    if "sdf" not in specs:
+        raise record.error("sdf", "present", "absent")
     return specs
 
 
@@ -54,6 +56,10 @@ def _read(record: Record, name: str, charts: int) -> NetworkSpec:
     conditioning = record.member(4, "conditioning", CONDITIONINGS)
     if name != "uv" and conditioning != "none":
         raise record.error("conditioning", "none", conditioning)
+    embedding = record.take(5, "embedding", int, 0)
+    activation = record.member(6, "activation", ACTIVATIONS)
+    w0 = record.take(7, "w0", float, 30.0)
+    output = record.member(8, "output", OUTPUTS)
     with located(META, record.path):
         spec = NetworkSpec(
             hidden=tuple(hidden),
@@ -62,10 +68,10 @@ def _read(record: Record, name: str, charts: int) -> NetworkSpec:
             levels=levels,
             conditioning=conditioning,
             charts=0 if conditioning == "none" else charts,
-            embedding=record.take(5, "embedding", int, 0),
-            activation=record.member(6, "activation", ACTIVATIONS),
-            w0=record.take(7, "w0", float, 30.0),
-            output=record.member(8, "output", OUTPUTS),
+            embedding=embedding,
+            activation=activation,
+            w0=w0,
+            output=output,
         )
     record.finish()
     return spec

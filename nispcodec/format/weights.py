@@ -46,23 +46,19 @@ def encode(networks: dict[str, Network], coding: str | None) -> bytes:
     return b"".join(_encode_network(name, networks[name], coding) for name in networks)
 
 
-def decode(specs: dict[str, NetworkSpec], data: bytes | memoryview) -> dict[str, Network]:
-    """The networks of these specs; no more than `MAX_WEIGHTS` weights in all."""
+def decode(
+    specs: dict[str, NetworkSpec], data: bytes | memoryview
+) -> tuple[dict[str, Network], dict[str, int]]:
+    """The networks of these specs, `MAX_WEIGHTS` weights at most, and the bytes of each."""
     _check_count(list(specs.values()))
     reader = Reader(NETS, data)
-    networks = {name: _decode_network(reader, name, spec) for name, spec in specs.items()}
-    reader.finish()
-    return networks
-
-
-def sizes(specs: dict[str, NetworkSpec], data: bytes | memoryview) -> dict[str, int]:
-    """Bytes of each network in the section."""
-    reader = Reader(NETS, data)
-    ends = [0]
+    networks, lengths = {}, {}
     for name, spec in specs.items():
-        _decode_network(reader, name, spec)
-        ends.append(reader.position)
-    return dict(zip(specs, np.diff(ends).tolist(), strict=True))
+        start = reader.position
+        networks[name] = _decode_network(reader, name, spec)
+        lengths[name] = reader.position - start
+    reader.finish()
+    return networks, lengths
 
 
 def _check_count(specs: list[NetworkSpec]) -> None:

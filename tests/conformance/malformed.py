@@ -1,0 +1,361 @@
+"""One file for each way of failing, with the section and field that the error must name.
+
+Built by hand around the smallest valid document: one chart without UV, one material, no texture,
+an SDF network with one hidden layer of two.
+"""
+
+from __future__ import annotations
+
+import struct
+from collections.abc import Iterator
+from typing import Any, NamedTuple
+
+import msgpack
+import zstandard
+
+from tests.conformance.builder import Row, change, container
+
+
+class Malformed(NamedTuple):
+    """A file that must be refused, and why."""
+
+    name: str
+    data: bytes
+    section: str
+    field: str
+
+
+FRAME = [0.0, 0.0, 0.0, 1.0]
+META: dict[int, Any] = {1: FRAME, 2: {1: {1: [2]}}, 5: b"\0"}
+TENSOR_SIZES = (6, 2, 2, 1)
+
+
+def meta(changes: dict[int, Any] | None = None) -> bytes:
+    """META with some fields changed; None removes a field."""
+    fields = {**META, **(changes or {})}
+    kept = {key: fields[key] for key in sorted(fields) if fields[key] is not None}
+    return bytes(msgpack.packb(kept, use_single_float=True))
+
+
+def dense(count: int) -> bytes:
+    """A dense float16 tensor of zeros."""
+    return b"\x01\x02" + bytes(2 * count)
+
+
+def nets(first: bytes | None = None, rest: bytes = b"") -> bytes:
+    """NETS with another first tensor (a weight of 2 rows and 3 columns)."""
+    tensors = [dense(count) for count in TENSOR_SIZES]
+    return b"".join([tensors[0] if first is None else first, *tensors[1:], rest])
+
+
+def rows(meta_bytes: bytes | None = None, nets_bytes: bytes | None = None) -> list[Row]:
+    """The two sections that every file has."""
+    return [
+        Row(b"META", meta() if meta_bytes is None else meta_bytes),
+        Row(b"NETS", nets() if nets_bytes is None else nets_bytes),
+    ]
+
+
+def squeezed(data: bytes) -> bytes:
+    """One zstd frame that states its content size."""
+    return zstandard.ZstdCompressor(level=19).compress(data)
+
+
+def all_malformed() -> Iterator[Malformed]:
+    """Every way of failing."""
+    yield from _headers()
+    yield from _entries()
+    yield from _sections()
+    yield from _packings()
+    yield from _encodings()
+    yield from _fields()
+    yield from _materials()
+    yield from _relations()
+    yield from _tensors()
+    yield from _sparse()
+    yield from _entropy()
+
+
+def _headers() -> Iterator[Malformed]:
+    good = container(rows())
+    yield Malformed("empty", b"", "header", "file length")
+    yield Malformed("header-cut", good[:15], "header", "file length")
+    yield Malformed("table-cut", good[:40], "header", "file length")
+    yield Malformed("payload-cut", good[:-1], "NETS", "stored length")
+    yield Malformed("byte-too-many", good + b"\0", "header", "file length")
+    for name, signature in {
+        "signature-other": b"\x89PNG\r\n\x1a\n",
+        "signature-seven-bit": b"\x09NSP\r\n\x1a\n",
+        "signature-crlf-to-lf": b"\x89NSP\n\x1a\n\x01",
+        "signature-lf-to-crlf": b"\x89NSP\r\r\n\x1a",
+    }.items():
+        yield Malformed(name, container(rows(), signature=signature), "header", "signature")
+    for major in (0, 2):
+        yield Malformed(f"major-{major}", container(rows(), major=major), "header", "major version")
+    yield Malformed("sections-none", container([]), "header", "section count")
+    many = [Row(b"X%03d" % i, b"", flags=0) for i in range(65)]
+    yield Malformed("sections-many", container(many), "header", "section count")
+    yield Malformed("header-checksum", container(rows(), checksum=1), "header", "checksum")
+
+
+def _entries() -> Iterator[Malformed]:
+    claims: dict[str, tuple[dict[str, Any], str, str]] = {
+        "code-lower-case": ({"code": b"nets"}, "header", "section code"),
+        "code-not-ascii": ({"code": b"N\xc9TS"}, "header", "section code"),
+        "flags-unknown": ({"flags": 3}, "NETS", "flags"),
+        "flags-ancillary": ({"flags": 0}, "NETS", "flags"),
+        "packing-reserved": ({"packing": 0}, "NETS", "packing"),
+        "packing-unknown": ({"packing": 3}, "NETS", "packing"),
+        "offset-gap": ({"offset": 1000}, "NETS", "offset"),
+        "offset-overlap": ({"offset": 16}, "NETS", "offset"),
+        "stored-too-long": ({"stored": 2**32 - 1}, "NETS", "stored length"),
+        "stored-too-short": (
+            {"stored": 1, "decoded": 1, "checksum": 0xA505DF1B},
+            "header",
+            "file length",
+        ),
+        "decoded-not-stored": ({"decoded": 5}, "NETS", "decoded length"),
+        "payload-checksum": ({"checksum": 5}, "NETS", "checksum"),
+    }
+    for name, (claim, section, field) in claims.items():
+        yield Malformed(name, container(change(rows(), b"NETS", **claim)), section, field)
+
+
+def _sections() -> Iterator[Malformed]:
+    two = rows()
+    yield Malformed("section-order", container(two[::-1]), "header", "section order")
+    yield Malformed("section-twice", container([*two, two[1]]), "header", "section order")
+    critical = [*two, Row(b"ZZZZ", b"")]
+    yield Malformed("critical-unknown", container(critical), "ZZZZ", "section code")
+    yield Malformed("meta-missing", container(two[1:]), "META", "section")
+    yield Malformed("nets-missing", container(two[:1]), "NETS", "section")
+    yield Malformed("txtr-unasked", container([*two, Row(b"TXTR", b"")]), "TXTR", "section")
+    textured = rows(meta({8: [{1: "a.png", 3: 5}]}))
+    yield Malformed("txtr-missing", container(textured), "TXTR", "section")
+    short = [*textured, Row(b"TXTR", b"1234")]
+    yield Malformed("txtr-too-short", container(short), "TXTR", "length")
+    info = {"empty": b"\x80", "key": b"\x81\x01\x01", "value": b"\x81\xa1a\x90", "list": b"\x90"}
+    for name, data in info.items():
+        file = container([Row(b"INFO", data, flags=0), *two])
+        yield Malformed(f"info-{name}", file, "INFO", "info")
+
+
+def _packings() -> Iterator[Malformed]:
+    content = nets()
+    packed = squeezed(content)
+    unsized = zstandard.ZstdCompressor(write_content_size=False).compress(content)
+    cases = {
+        "zstd-noise": (b"\xff" * 8, len(content), "payload"),
+        "zstd-cut": (packed[:-1], len(content), "payload"),
+        "zstd-two-frames": (squeezed(bytes(999)) * 2, 999, "payload"),
+        "zstd-skippable": (b"\x50\x2a\x4d\x18\x04\0\0\0abcd", len(content), "zstd content size"),
+        "zstd-no-size": (unsized, len(content), "zstd content size"),
+        "zstd-other-size": (packed, len(content) + 1, "zstd content size"),
+        "zstd-not-smaller": (packed, len(packed), "decoded length"),
+    }
+    for name, (payload, decoded, field) in cases.items():
+        claim = {"payload": payload, "packing": 2, "decoded": decoded}
+        yield Malformed(name, container(change(rows(), b"NETS", **claim)), "NETS", field)
+    bomb = squeezed(bytes(2**25 + 1))
+    claim = {"payload": bomb, "packing": 2, "decoded": 2**25 + 1}
+    file = container(change(rows(), b"NETS", **claim))
+    yield Malformed("zstd-bomb", file, "header", "decoded length")
+
+
+def _encodings() -> Iterator[Malformed]:
+    good = meta()
+    cases = {
+        "msgpack-empty": (b"", "msgpack"),
+        "msgpack-cut": (good[:-1], "msgpack"),
+        "msgpack-extra": (good + b"\x01", "msgpack"),
+        "msgpack-nil": (b"\x81\x01\xc0", "type"),
+        "msgpack-extension": (b"\x81\x01\xd4\x05\x00", "msgpack"),
+        "msgpack-not-utf8": (b"\x81\x01\xa1\xff", "msgpack"),
+        "msgpack-key-order": (b"\x82" + good[-4:-1] + good[-1:] + good[1:22], "msgpack"),
+        "msgpack-key-twice": (b"\x82\x01\x01\x01\x01", "msgpack"),
+        "msgpack-key-map": (b"\x81\x80\x01", "msgpack"),
+        "msgpack-long-integer": (b"\x81\x03\xcc\x02", "msgpack"),
+        "msgpack-long-map": (b"\xde\x00\x01\x01\x01", "msgpack"),
+        "msgpack-wide-float": (b"\x81\x01\xcb" + struct.pack(">d", 0.5), "msgpack"),
+        "msgpack-nan": (b"\x81\x01\xca" + struct.pack(">f", float("nan")), "number"),
+        "msgpack-infinity": (b"\x81\x01\xca" + struct.pack(">f", float("inf")), "number"),
+        "msgpack-deep": (b"\x81\x01" + b"\x91" * 8 + b"\x01", "depth"),
+        "msgpack-very-deep": (b"\x91" * 4000, "msgpack"),
+        "msgpack-array-bomb": (b"\x81\x01\xdd\xff\xff\xff\xff", "msgpack"),
+        "msgpack-long-text": (b"\x81\x01\xda\x04\x01" + b"a" * 1025, "msgpack"),
+        "msgpack-not-a-map": (b"\x90", "document"),
+    }
+    for name, (data, field) in cases.items():
+        yield Malformed(name, container(rows(data)), "META", field)
+    crowd = msgpack.packb({1: [[1] * 4095 for _ in range(5)]})
+    yield Malformed("msgpack-crowd", container(rows(crowd)), "META", "values")
+    long = squeezed(bytes(2**19 + 1))
+    claim = {"payload": long, "packing": 2, "decoded": 2**19 + 1}
+    file = container(change(rows(), b"META", **claim))
+    yield Malformed("msgpack-too-long", file, "META", "length")
+
+
+def _fields() -> Iterator[Malformed]:
+    cases: dict[str, tuple[dict[int, Any], str]] = {
+        "key-unknown": ({99: 1}, "document.keys"),
+        "frame-missing": ({1: None}, "document.frame"),
+        "frame-of-three": ({1: FRAME[1:]}, "document.frame"),
+        "frame-of-integers": ({1: [0, 0, 0, 1]}, "document.frame"),
+        "frame-flat": ({1: [0.0] * 4}, "document.frame"),
+        "networks-missing": ({2: None}, "document.networks"),
+        "networks-unknown": ({2: {1: {1: [2]}, 4: {1: [2]}}}, "networks.keys"),
+        "sdf-missing": ({2: {}}, "networks.sdf"),
+        "charts-none": ({3: 0}, "document.charts"),
+        "charts-default": ({3: 1}, "document.charts"),
+        "charts-many": ({3: 65536}, "document.charts"),
+        "chart-materials-length": ({4: b"\0\0"}, "document.chart_materials"),
+        "chart-materials-default": ({4: b"\0"}, "document.chart_materials"),
+        "chart-has-uv-length": ({5: b"\0\0"}, "document.chart_has_uv"),
+        "chart-has-uv-tail": ({5: b"\x01"}, "document.chart_has_uv"),
+        "chart-has-uv-default": ({5: b"\x80"}, "document.chart_has_uv"),
+        "uv-map-default": ({6: [0.0, 0.0, 1.0, 1.0]}, "document.uv_map"),
+        "shell-integer": ({9: 1}, "document.shell"),
+    }
+    specs: dict[str, tuple[dict[int, Any], str]] = {
+        "hidden-missing": ({}, "hidden"),
+        "hidden-empty": ({1: []}, "hidden layers"),
+        "hidden-deep": ({1: [1] * 33}, "hidden layers"),
+        "hidden-zero": ({1: [0]}, "hidden width"),
+        "hidden-wide": ({1: [1025]}, "hidden width"),
+        "hidden-text": ({1: ["a"]}, "hidden"),
+        "encoding-reserved": ({1: [2], 2: 0}, "encoding"),
+        "encoding-unknown": ({1: [2], 2: 3}, "encoding"),
+        "encoding-default": ({1: [2], 2: 1}, "encoding"),
+        "levels-none": ({1: [2], 2: 2}, "levels"),
+        "levels-many": ({1: [2], 2: 2, 3: 17}, "levels"),
+        "levels-alone": ({1: [2], 3: 2}, "levels"),
+        "sdf-conditioned": ({1: [2], 4: 2}, "conditioning"),
+        "embedding-alone": ({1: [2], 5: 4}, "embedding"),
+        "activation-unknown": ({1: [2], 6: 3}, "activation"),
+        "w0-zero": ({1: [2], 7: 0.0}, "w0"),
+        "w0-large": ({1: [2], 7: 1001.0}, "w0"),
+        "output-unknown": ({1: [2], 8: 4}, "output"),
+        "spec-key-unknown": ({1: [2], 9: 1}, "keys"),
+    }
+    for name, (fields, field) in specs.items():
+        cases[name] = ({2: {1: fields}}, f"networks.sdf.{field}")
+    for name, (changes, field) in cases.items():
+        yield Malformed(name, container(rows(meta(changes))), "META", field)
+
+
+def _materials() -> Iterator[Malformed]:
+    cases: dict[str, tuple[dict[int, Any], str]] = {
+        "name-control": ({1: "a\nb"}, "name"),
+        "base-color-of-three": ({2: [0.5, 0.5, 0.5]}, "base_color"),
+        "alpha-mode-unknown": ({6: 4}, "alpha_mode"),
+        "double-sided-number": ({8: 1}, "double_sided"),
+        "slot-unknown": ({9: {6: {}}}, "maps.keys"),
+        "wrap-unknown": ({9: {1: {2: 4}}}, "maps.base_color.wrap_u"),
+        "filter-unknown": ({9: {1: {4: 3}}}, "maps.base_color.filter"),
+        "map-key-unknown": ({9: {1: {6: 1}}}, "maps.base_color.keys"),
+        "material-key-unknown": ({10: 1}, "keys"),
+    }
+    for name, (fields, field) in cases.items():
+        yield Malformed(name, container(rows(meta({7: [fields]}))), "META", f"materials.0.{field}")
+    textures: dict[str, tuple[dict[int, Any], str]] = {
+        "texture-nameless": ({3: 1}, "name"),
+        "texture-path": ({1: "../a.png", 3: 1}, "name"),
+        "texture-mime-unknown": ({1: "a.png", 2: 5, 3: 1}, "mime"),
+        "texture-negative": ({1: "a.png", 3: -1}, "length"),
+        "texture-key-unknown": ({1: "a.png", 3: 1, 4: 1}, "keys"),
+    }
+    for name, (fields, field) in textures.items():
+        yield Malformed(name, container(rows(meta({8: [fields]}))), "META", f"textures.0.{field}")
+
+
+def _relations() -> Iterator[Malformed]:
+    spec = {1: [2]}
+    many = b"".join(dense(count) for _ in range(2) for count in TENSOR_SIZES)
+    cases: dict[str, tuple[dict[int, Any], bytes, str]] = {
+        "materials-none": ({7: []}, nets(), "document.materials"),
+        "chart-material-unknown": ({4: b"\x01"}, nets(), "document.chart materials"),
+        "map-texture-unknown": ({7: [{9: {1: {}}}]}, nets(), "document.material.base_color"),
+        "chart-network-missing": ({3: 2, 5: b"\0"}, nets(), "document.chart network"),
+        "chart-network-unasked": ({2: {1: spec, 2: spec}}, many, "document.chart network"),
+        "uv-network-missing": ({5: None}, nets(), "document.uv network"),
+    }
+    for name, (changes, data, field) in cases.items():
+        yield Malformed(name, container(rows(meta(changes), data)), "META", field)
+
+
+def _tensors() -> Iterator[Malformed]:
+    infinite = b"\x01\x02" + struct.pack("<6e", *[float("inf")] * 6)
+    overflow = b"\x81" + struct.pack("<f", 3e38) + b"\x03" + b"\x7f" * 6
+    cases = {
+        "coding-reserved": (b"\0" + dense(6)[1:], "coding"),
+        "coding-unknown": (b"\x07" + dense(6)[1:], "coding"),
+        "coding-short-step-alone": (b"\x41" + dense(6)[1:], "coding"),
+        "number-kind-reserved": (b"\x01\0" + bytes(12), "number kind"),
+        "number-kind-of-symbols": (b"\x01\x03" + bytes(6), "number kind"),
+        "number-kind-of-floats": (b"\x81\0\0\0\x3f\x02" + bytes(12), "number kind"),
+        "step-zero": (b"\x81\0\0\0\0\x03" + bytes(6), "step"),
+        "step-negative": (b"\x81" + struct.pack("<f", -1) + b"\x03" + bytes(6), "step"),
+        "step-nan": (b"\xc1" + struct.pack("<e", float("nan")) + b"\x03" + bytes(6), "step"),
+    }
+    for name, (tensor, field) in cases.items():
+        file = container(rows(None, nets(tensor)))
+        yield Malformed(name, file, "NETS", f"sdf.weight.0.{field}")
+    for name, tensor in {"weights-infinite": infinite, "weights-overflow": overflow}.items():
+        yield Malformed(name, container(rows(None, nets(tensor))), "NETS", "sdf.weight.0")
+    yield Malformed("nets-cut", container(rows(None, nets()[:-1])), "NETS", "sdf.bias.1.values")
+    yield Malformed("nets-extra", container(rows(None, nets(rest=b"\0"))), "NETS", "end")
+    wide = meta({2: {1: {1: [1024, 1024]}}})
+    yield Malformed("weights-many", container(rows(wide)), "NETS", "weights")
+
+
+def _sparse() -> Iterator[Malformed]:
+    one = b"\x02\0\x3c"
+    cases = {
+        "coo-count": (b"\x02\x07", "count"),
+        "coo-count-long": (b"\x02\x80\0", "count"),
+        "coo-count-endless": (b"\x02" + b"\x80" * 6, "count"),
+        "coo-row": (b"\x02\x02\x01\x01\0\0" + one + b"\0\x3c", "row"),
+        "coo-row-step": (b"\x02\x01\x02\0" + one, "row step"),
+        "coo-column": (b"\x02\x02\0\0\x02\0" + one + b"\0\x3c", "column"),
+        "coo-column-gap": (b"\x02\x01\0\x03" + one, "column gap"),
+        "csr-row-count": (b"\x04\x04\0", "row count"),
+        "csr-column": (b"\x04\x02\0\x02\0" + one + b"\0\x3c", "column"),
+        "csc-column": (b"\x03\x02\0\0\x01\x01" + one + b"\0\x3c", "column"),
+        "dia-count": (b"\x05\x05", "diagonal count"),
+        "dia-gap": (b"\x05\x01\x04", "diagonal gap"),
+        "dia-diagonal": (b"\x05\x02\x03\0", "diagonal"),
+    }
+    for name, (tensor, field) in cases.items():
+        file = container(rows(None, nets(tensor)))
+        yield Malformed(name, file, "NETS", f"sdf.weight.0.{field}")
+
+
+def _entropy() -> Iterator[Malformed]:
+    """A pool for the first tensor only: symbols, one table, tokens 0 and 1 equally frequent."""
+    tensor = b"\x86" + struct.pack("<f", 0.5) + b"\0"
+    table = b"\x01\x02\x11"
+    state = b"\x02\x01\0\0\0"
+    cases = {
+        "pool-cut": (b"", "sdf.table count"),
+        "pool-table-count": (b"\x02" + table[1:] * 2, "sdf.table count"),
+        "pool-token-count": (b"\x01\0", "sdf.token count"),
+        "pool-tokens-many": (b"\x01\x3f", "sdf.token count"),
+        "pool-last-level": (b"\x01\x02\x10", "sdf.levels"),
+        "pool-levels-tail": (b"\x01\x01\x11", "sdf.levels"),
+        "pool-words-one": (table + b"\x01\0\0", "sdf.words"),
+        "pool-words-many": (table + b"\x09", "sdf.word count"),
+        "pool-words-few": (table + b"\x02\0\0\0\0", "sdf.words"),
+        "pool-final-state": (table + b"\x02\x02\0\0\0", "sdf.words"),
+        "pool-words-left": (b"\x01\x01\x10\x03\x01\0\0\0\0\0", "sdf.final state"),
+        "pool-state-low": (b"\x01\x01\x10\x02\0\0\x01\0", "sdf.words"),
+        "pool-signs-cut": (b"\x01\x02\x01" + state, "sdf.signs"),
+        "pool-signs-tail": (b"\x01\x02\x01" + state + b"\x01", "sdf.signs"),
+        "pool-magnitude": (b"\x01\x2d" + b"\0" * 22 + b"\x10" + state, "sdf.signs"),
+    }
+    tail = nets(b"")
+    for name, (pool, field) in cases.items():
+        yield Malformed(name, container(rows(None, tensor + tail + pool)), "NETS", field)
+    for name, head in {"top-large": b"\x06\x02\x80\xf8\x01\0", "top-kind": b"\x06\x03\0"}.items():
+        field = {"top-large": "top", "top-kind": "number kind"}[name]
+        file = container(rows(None, head + tail))
+        yield Malformed(name, file, "NETS", f"sdf.weight.0.{field}")

@@ -1,0 +1,81 @@
+"""No byte string does anything but unpack or raise `FormatError`."""
+
+from __future__ import annotations
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from nispcodec.errors import FormatError
+from nispcodec.format import pack, unpack
+from nispcodec.format.constants import CODINGS
+from nispcodec.format.container import content, read_container
+from tests.conformance.builder import Row, change, container
+from tests.format.documents import full, tiny
+
+FILES = [pack(full(), coding) for coding in (None, *CODINGS)]
+
+
+def raw_rows(data: bytes) -> list[Row]:
+    """The sections of a file, unpacked, ready to be written again with true checksums."""
+    return [
+        Row(entry.code.encode(), bytes(content(entry)), flags=int(entry.critical))
+        for entry in read_container(data)
+    ]
+
+
+def survives(data: bytes) -> None:
+    """The bytes are refused in the proper way, or make a document that can be written."""
+    try:
+        document = unpack(data)
+    except FormatError:
+        return
+    assert unpack(pack(document, "dense")).frame == document.frame
+
+
+@pytest.mark.parametrize("data", [pack(tiny()), FILES[0]], ids=["tiny", "full"])
+def test_truncation_at_every_byte(data: bytes) -> None:
+    for length in range(len(data)):
+        with pytest.raises(FormatError):
+            unpack(data[:length])
+
+
+@pytest.mark.parametrize("data", [pack(tiny()), FILES[0]], ids=["tiny", "full"])
+def test_every_single_byte_change(data: bytes) -> None:
+    for position, byte in enumerate(data):
+        for changed in {byte ^ 1, byte ^ 0x80, byte ^ 0xFF, 0} - {byte}:
+            with pytest.raises(FormatError):
+                unpack(data[:position] + bytes([changed]) + data[position + 1 :])
+
+
+@pytest.mark.parametrize(
+    ("data", "code"),
+    [(FILES[0], b"INFO"), (FILES[0], b"META"), *((data, b"NETS") for data in FILES[1:])],
+    ids=["INFO", "META", *CODINGS],
+)
+def test_every_single_byte_of_the_content_changed(data: bytes, code: bytes) -> None:
+    rows = raw_rows(data)
+    payload = next(row.payload for row in rows if row.code == code)
+    for position in range(len(payload)):
+        mutated = bytearray(payload)
+        mutated[position] ^= 1 << position % 8
+        survives(container(change(rows, code, payload=bytes(mutated))))
+
+
+@given(st.binary(max_size=200))
+def test_noise(data: bytes) -> None:
+    survives(data)
+    survives(FILES[0][:8] + data)
+
+
+@given(st.data())
+@settings(max_examples=300, deadline=None)
+def test_spliced_content(data: st.DataObject) -> None:
+    rows = raw_rows(data.draw(st.sampled_from(FILES)))
+    index = data.draw(st.integers(0, len(rows) - 1))
+    payload = rows[index].payload
+    start = data.draw(st.integers(0, len(payload)))
+    end = data.draw(st.integers(start, min(len(payload), start + 6)))
+    payload = payload[:start] + data.draw(st.binary(max_size=6)) + payload[end:]
+    changed = Row(rows[index].code, payload, rows[index].flags)
+    survives(container([*rows[:index], changed, *rows[index + 1 :]]))

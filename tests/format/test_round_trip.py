@@ -1,0 +1,117 @@
+"""Documents come back as they were, and a file has one form."""
+
+from __future__ import annotations
+
+import dataclasses
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+
+from nispcodec.asset import Material
+from nispcodec.document import ChartTable, Document
+from nispcodec.errors import FormatError
+from nispcodec.format import inspect, pack, unpack
+from nispcodec.format.constants import CODINGS
+from nispcodec.network import NetworkSpec
+from tests.format.documents import assert_same, documents, full, network, quantised, tiny
+
+
+@given(documents())
+@settings(max_examples=60, deadline=None)
+def test_any_document(document: Document) -> None:
+    data = pack(document)
+    assert_same(unpack(data), document)
+    assert pack(unpack(data)) == data
+
+
+@pytest.mark.parametrize("coding", CODINGS)
+def test_every_coding_keeps_every_document(coding: str) -> None:
+    for document in (tiny(), full()):
+        assert_same(unpack(pack(document, coding)), document)
+
+
+@given(documents())
+@settings(max_examples=10, deadline=None)
+def test_every_coding_keeps_any_document(document: Document) -> None:
+    for coding in CODINGS:
+        assert_same(unpack(pack(document, coding)), document)
+
+
+def test_the_default_is_as_small_as_any_coding() -> None:
+    spec = NetworkSpec((32, 32, 32), 1)
+    for sdf in (network(spec), quantised(network(spec)), quantised(network(spec), density=0.1)):
+        document = dataclasses.replace(tiny(), sdf=sdf)
+        smallest = min(len(pack(document, coding)) for coding in CODINGS)
+        assert len(pack(document)) <= smallest
+
+
+def test_inspect_accounts_for_every_byte() -> None:
+    data = pack(full())
+    sections = inspect(data)
+    assert [section.code for section in sections] == ["INFO", "META", "NETS", "TXTR", "ZZZZ"]
+    assert sections[0].offset == 16 + 24 * len(sections)
+    assert sections[0].offset + sum(section.stored_length for section in sections) == len(data)
+    by_code = {section.code: section for section in sections}
+    assert list(by_code["NETS"].parts) == ["sdf", "chart", "uv"]
+    assert sum(by_code["NETS"].parts.values()) == by_code["NETS"].decoded_length
+    assert by_code["TXTR"].parts == {"wood.png": 16, "wood normal.jpg": 10}
+
+
+def test_overhead_of_a_one_material_asset() -> None:
+    charts = ChartTable(np.zeros(13, np.int32), np.ones(13, np.bool_), (-0.1, 0.0123), (1.1, 0.98))
+    spec = NetworkSpec((32,) * 4, 2, conditioning="embedding", charts=13, embedding=8)
+    document = dataclasses.replace(
+        full(),
+        charts=charts,
+        materials=(Material("spot", maps={"base_color": full().materials[0].maps["normal"]}),),
+        textures=full().textures,
+        chart=network(NetworkSpec((32,) * 4, 13)),
+        uv=network(spec),
+        info={},
+        extra={},
+    )
+    sections = inspect(pack(document))
+    content = sum(section.stored_length for section in sections if section.code in ("NETS", "TXTR"))
+    assert len(pack(document)) - content <= 256
+
+
+def test_negative_zero_becomes_zero() -> None:
+    sdf = network(NetworkSpec((2,), 1))
+    sdf.tensors["weight.0"][0, 0] = -0.0
+    back = unpack(pack(dataclasses.replace(tiny(), sdf=sdf))).sdf
+    assert not np.signbit(back.tensors["weight.0"][0, 0])
+
+
+def test_weights_that_are_no_multiples_of_their_step() -> None:
+    sdf = dataclasses.replace(network(NetworkSpec((2,), 1)), steps={"weight.0": 0.3})
+    with pytest.raises(FormatError, match=r"sdf\.weight\.0: expected multiples of the step 0\.3"):
+        pack(dataclasses.replace(tiny(), sdf=sdf))
+
+
+@pytest.mark.parametrize(
+    ("change", "field"),
+    [
+        ({"materials": (Material("a\nb"),)}, "materials.a\nb.name"),
+        ({"materials": (Material(alpha_mode="glow"),)}, "materials.material.alpha_mode"),
+        ({"materials": (Material(base_color=(np.nan, 0, 0, 0)),)}, "number"),
+        ({"info": {"a": [1]}}, "info"),
+        ({"info": {"a": 2**64}}, "value"),
+        ({"info": {"a": "\ud800"}}, "value"),
+        ({"info": {"a": "x" * 2000}}, "text length"),
+        ({"extra": {"META": b""}}, "extra"),
+        ({"extra": {"abcd": b""}}, "section code"),
+        ({"extra": {f"X{i:03}": b"" for i in range(64)}}, "section count"),
+    ],
+)
+def test_documents_that_cannot_be_written(change: dict[str, object], field: str) -> None:
+    with pytest.raises(FormatError) as caught:
+        pack(dataclasses.replace(tiny(), **change))
+    assert caught.value.field == field
+
+
+@pytest.mark.parametrize("name", ["", ".", "..", "a/b.png", "..\\b.png", "c:b.png", "a\0.png"])
+def test_texture_names_that_lead_elsewhere(name: str) -> None:
+    texture = dataclasses.replace(full().textures[0], name=name)
+    with pytest.raises(FormatError, match=r"a bare file name|control characters"):
+        pack(dataclasses.replace(full(), textures=(texture, texture)))
