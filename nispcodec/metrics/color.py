@@ -16,15 +16,19 @@ from nispcodec.texture import Image, base_color, decode_image
 
 
 def color_at(surface: Surface, points: SurfacePoints) -> Image:
-    """(n, 4) float32: sRGB-encoded base colour and alpha at points of a surface."""
+    """(n, 4) float32: sRGB-encoded base colour and alpha at points of a surface.
+
+    Faces without UV show their material's factor alone.
+    """
     mesh, uvs = surface.mesh, uv_at(surface, points)
+    textured = mesh.has_uv[points.faces]
     materials = mesh.face_materials[points.faces]
     colors = np.empty((len(uvs), 4), dtype=np.float32)
-    for index in np.unique(materials):
-        chosen = materials == index
-        colors[chosen] = base_color(
-            mesh.materials[index], base_color_image(mesh, int(index)), uvs[chosen]
-        )
+    for index in np.unique(materials).tolist():
+        for has_uv in (True, False):
+            chosen = (materials == index) & (textured == has_uv)
+            image = base_color_image(mesh, index) if has_uv and chosen.any() else None
+            colors[chosen] = base_color(mesh.materials[index], image, uvs[chosen])
     return colors
 
 

@@ -1,9 +1,12 @@
 from __future__ import annotations
 
+import dataclasses
+
 import numpy as np
 import pytest
 
 from nispcodec.errors import QueryError
+from nispcodec.metrics.color import color_at
 from nispcodec.metrics.parameterisation import distortion_summary, triangle_distortions
 from nispcodec.metrics.pictures import compare_pictures
 from nispcodec.metrics.psnr import CEILING, psnr
@@ -112,3 +115,14 @@ def test_pictures() -> None:
 def test_pictures_of_different_shapes_are_refused() -> None:
     with pytest.raises(QueryError, match="shape"):
         compare_pictures(np.zeros((8, 8, 3), np.float32), np.zeros((8, 9, 3), np.float32))
+
+
+def test_faces_without_uv_show_the_factor() -> None:
+    mesh = plane(cells=1)
+    uv_faces = mesh.uv_faces.copy()
+    uv_faces[0] = -1
+    surface = surface_of(dataclasses.replace(mesh, uv_faces=uv_faces))
+    points = surface.sample(400, np.random.default_rng(0))
+    colors = color_at(surface, points)
+    assert (colors[points.faces == 0] == 1).all()
+    assert set(np.unique(colors[points.faces == 1][:, 0].round(6))) >= {0.0, 1.0}
