@@ -89,43 +89,35 @@ def _steepness(network: Network, points: Floats) -> float:
 def _block_values(network: Network, blocks: Ids, across: int, cell: float) -> Floats:
     """The field at each block's (BLOCK + 1)^3 grid points: (b, 5, 5, 5) float32.
 
-    A point shared by several blocks has one value, bit for bit, or the surface would crack.
+    A block owns its BLOCK^3 lower points and takes the others from its upper neighbours, so that a
+    point shared by several blocks has one value, bit for bit, or the surface would crack.
     """
     numbers = np.full((across + 1,) * 3, -1, np.int32)
     numbers[tuple(blocks.T)] = np.arange(len(blocks))
     inner = _lattice(BLOCK)
     own = _field(network, (blocks[:, None] * BLOCK + inner).reshape(-1, 3), cell)
-    own = own.reshape(-1, BLOCK**3)
-    outer = _lattice(BLOCK + 1)
-    values = np.empty((len(blocks), len(outer)), np.float32)
-    absent: list[tuple[NDArray[np.bool_], int]] = []
-    for column, offset in enumerate(outer):
-        owner = numbers[tuple((blocks + offset // BLOCK).T)]
-        values[:, column] = own[owner, np.ravel_multi_index(tuple(offset % BLOCK), (BLOCK,) * 3)]
-        if (owner < 0).any():
-            absent.append((owner < 0, column))
-    _fill_absent(network, blocks, outer, absent, values, cell)
-    return values.reshape(-1, *(BLOCK + 1,) * 3)
+    own = own.reshape(-1, *(BLOCK,) * 3)
+    values = np.empty((len(blocks), *(BLOCK + 1,) * 3), np.float32)
+    values[:, :BLOCK, :BLOCK, :BLOCK] = own
+    absent = np.zeros(values.shape, np.bool_)
+    for corner in CORNERS[1:]:
+        owners = numbers[tuple((blocks + corner).T)]
+        rim = (slice(None), *(slice(BLOCK, None) if c else slice(BLOCK) for c in corner))
+        theirs = (slice(None), *(slice(1) if c else slice(None) for c in corner))
+        values[rim] = own[theirs][owners]
+        absent[rim] = (owners < 0)[:, None, None, None]
+    _fill(network, blocks, absent, values, cell)
+    return values
 
 
-def _fill_absent(
-    network: Network,
-    blocks: Ids,
-    outer: Ids,
-    absent: list[tuple[NDArray[np.bool_], int]],
-    values: Floats,
-    cell: float,
+def _fill(
+    network: Network, blocks: Ids, absent: NDArray[np.bool_], values: Floats, cell: float
 ) -> None:
-    if not absent:
-        return
-    points = np.vstack([blocks[rows] * BLOCK + outer[column] for rows, column in absent])
-    ids, inverse = np.unique(_key(points), return_inverse=True)
-    filled = _field(network, _unkey(ids), cell)[inverse]
-    start = 0
-    for rows, column in absent:
-        stop = start + int(rows.sum())
-        values[rows, column] = filled[start:stop]
-        start = stop
+    """Evaluate the rim points that no kept block owns, each once."""
+    block, *offset = np.nonzero(absent)
+    keys = _key(blocks[block] * BLOCK + np.stack(offset, axis=1))
+    unique, inverse = np.unique(keys, return_inverse=True)
+    values[absent] = _field(network, _unkey(unique), cell)[inverse]
 
 
 def _field(network: Network, grid: Ids, cell: float) -> Floats:
