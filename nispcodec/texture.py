@@ -8,6 +8,7 @@ from __future__ import annotations
 import io
 import struct
 import warnings
+from pathlib import PurePath
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -44,6 +45,24 @@ def decode_image(texture: Texture) -> Image:
             return _to_rgba(image)
     except (*_BROKEN, PIL.Image.DecompressionBombWarning, PIL.Image.DecompressionBombError) as why:
         raise MeshError(f"texture {texture.name}: expected an image, found: {why}") from why
+
+
+def reencode(texture: Texture, kind: str, quality: int) -> Texture:
+    """The same image as another file: `kind` "webp", "avif" or "jpeg", `quality` 1 to 100.
+
+    JPEG holds no transparency: an image that has some stays as it is.
+    """
+    import PIL.Image
+
+    pixels = np.rint(decode_image(texture) * 255).astype(np.uint8)
+    opaque = bool((pixels[..., 3] == 255).all())
+    if kind == "jpeg" and not opaque:
+        return texture
+    image = PIL.Image.fromarray(pixels[..., :3] if opaque else pixels)
+    file = io.BytesIO()
+    image.save(file, kind, quality=quality)
+    suffix = "jpg" if kind == "jpeg" else kind
+    return Texture(f"{PurePath(texture.name).stem}.{suffix}", file.getvalue(), f"image/{kind}")
 
 
 def sample_texture(

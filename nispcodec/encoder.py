@@ -1,0 +1,158 @@
+"""The encoder: a textured mesh and a preset in, a model out."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from nispcodec.asset import Material, Texture, TexturedMesh
+from nispcodec.document import Document
+from nispcodec.errors import NispError
+from nispcodec.network import Network, to_half
+from nispcodec.progress import Listener, Progress, silent
+
+if TYPE_CHECKING:
+    from nispcodec.decode.model import NispModel
+    from nispcodec.mesh.samples import Sampler
+    from nispcodec.mesh.training import TrainingSets
+
+PRESETS = ("balanced", "paper")
+GAP = 0.05
+"""Charts further apart than this (normalised frame) may share a number; not in the paper preset."""
+
+NOTABLE_SHEETS = 0.02
+"""From this share of the area on, sheets are worth the finer extraction that they need."""
+
+
+@dataclass(frozen=True)
+class EncodeConfig:
+    """How to encode.
+
+    preset          one of `PRESETS`
+    seed            of everything random: the same input, seed and threads give the same bytes
+    device          "auto", "cpu", "cuda"
+    threads         cores to use; 0: all
+    texture_format  None keeps the image files as they are; "webp", "avif", "jpeg" re-encode them
+    texture_quality 1 to 100, for a `texture_format`
+    textures        False leaves the images out
+    """
+
+    preset: str = "balanced"
+    seed: int = 0
+    device: str = "auto"
+    threads: int = 0
+    texture_format: str | None = None
+    texture_quality: int = 90
+    textures: bool = True
+
+    def __post_init__(self) -> None:
+        if self.preset not in PRESETS:
+            raise NispError(f"preset: expected one of {', '.join(PRESETS)}, found {self.preset!r}")
+        if self.seed < 0 or self.threads < 0:
+            raise NispError("seed and threads: expected 0 or more")
+
+
+def encode(
+    mesh: TexturedMesh, config: EncodeConfig | None = None, progress: Listener = silent
+) -> NispModel:
+    """Fit networks to an asset. Ctrl-C and errors leave nothing behind.
+
+    Raises MeshError when nothing of the mesh can be held by a signed distance, FitError when a
+    network does not converge.
+    """
+    from nispcodec.decode.model import NispModel
+
+    config = config or EncodeConfig()
+    materials, textures = _appearance(mesh, config)
+    sampler, sets = _sample(mesh, config, progress)
+    networks = {name: to_half(network) for name, network in _fit(sampler, sets, config, progress)}
+    document = Document(
+        frame=sampler.frame,
+        charts=sampler.table,
+        materials=materials,
+        textures=textures,
+        shell=_shell(sampler),
+        **networks,
+    )
+    return NispModel(replace(document, info=_measured(document, sampler, sets, config)))
+
+
+def _appearance(
+    mesh: TexturedMesh, config: EncodeConfig
+) -> tuple[tuple[Material, ...], tuple[Texture, ...]]:
+    from nispcodec.texture import reencode
+
+    if not config.textures:
+        return tuple(replace(material, maps={}) for material in mesh.materials), ()
+    if config.texture_format is None:
+        return mesh.materials, mesh.textures
+    quality = config.texture_quality
+    images = (reencode(image, config.texture_format, quality) for image in mesh.textures)
+    return mesh.materials, tuple(images)
+
+
+def _sample(
+    mesh: TexturedMesh, config: EncodeConfig, progress: Listener
+) -> tuple[Sampler, TrainingSets]:
+    from nispcodec.mesh.samples import Sampler
+    from nispcodec.mesh.training import paper_training_sets, training_sets
+
+    progress(Progress(stage="charts and hidden walls"))
+    paper = config.preset == "paper"
+    sampler = Sampler(mesh, config.seed, gap=0.0 if paper else GAP)
+    progress(Progress(stage="samples"))
+    return sampler, (paper_training_sets if paper else training_sets)(sampler)
+
+
+def _fit(
+    sampler: Sampler, sets: TrainingSets, config: EncodeConfig, progress: Listener
+) -> list[tuple[str, Network]]:
+    progress(Progress(stage="fit"))
+    from nispcodec.fit.parallel import fit_networks, resolve_device
+    from nispcodec.fit.presets import tasks_for
+
+    tasks = tasks_for(config.preset, sampler.table, sets)
+    threads = config.threads or os.cpu_count() or 1
+    device = resolve_device(config.device)
+    return list(fit_networks(tasks, config.seed, device, threads, progress).items())
+
+
+def _shell(sampler: Sampler) -> float:
+    from nispcodec.mesh.solid import SHELL
+
+    return SHELL if sampler.solid.sheet_share >= NOTABLE_SHEETS else 0.0
+
+
+def _measured(
+    document: Document, sampler: Sampler, sets: TrainingSets, config: EncodeConfig
+) -> dict[str, str | int | float | bool]:
+    """Held-out errors of the networks as stored, by the decoder's own evaluation."""
+    from nispcodec.decode.model import NispModel
+
+    model = NispModel(document)
+    near, skin = sets.held_distance, sets.held_skin
+    distance = np.abs(model.sdf(near.points, frame="normalised") - near.sdf)
+    measured: dict[str, str | int | float | bool] = {
+        "preset": config.preset,
+        "seed": config.seed,
+        "hidden_share": _short(sampler.solid.hidden_share),
+        "sheet_share": _short(sampler.solid.sheet_share),
+        "distance_error": _short(distance.mean()),
+    }
+    charts = model.charts(skin.points, frame="normalised")
+    if document.chart is not None:
+        measured["chart_accuracy"] = _short((charts == skin.chart).mean())
+    if document.uv is not None:
+        wanted = skin.uv * document.charts.uv_scale + document.charts.uv_offset
+        off = np.linalg.norm(model.uv(skin.points, "normalised", charts) - wanted, axis=1)
+        measured["uv_error_median"] = _short(np.median(off))
+        measured["uv_error_mean"] = _short(off.mean())
+    return measured
+
+
+def _short(value: float | np.floating) -> float:
+    """Three significant digits: all that such a measurement is good for."""
+    return float(f"{float(value):.3g}")

@@ -1,0 +1,43 @@
+"""What the networks minimise, and what says how good they are."""
+
+from __future__ import annotations
+
+from torch import Tensor
+from torch.nn import functional
+
+from nispcodec.fit.module import Module
+from nispcodec.fit.task import Batch
+
+NEAR = 0.01
+"""Distances (normalised frame) well below this count in full in the relative loss."""
+
+
+def distance_error(module: Module, batch: Batch) -> Tensor:
+    """Mean |f - SDF| (paper, eq. 6)."""
+    return (module(batch.points)[:, 0] - batch.sdf).abs().mean()
+
+
+def relative_distance_loss(module: Module, batch: Batch) -> Tensor:
+    """Mean |f - SDF| / (|SDF| + NEAR): the nearer to the surface, the more an error costs."""
+    error = (module(batch.points)[:, 0] - batch.sdf).abs()
+    return (error / (batch.sdf.abs() + NEAR)).mean()
+
+
+def chart_loss(module: Module, batch: Batch) -> Tensor:
+    """Cross-entropy of the chart."""
+    return functional.cross_entropy(module(batch.points), batch.chart)
+
+
+def chart_error(module: Module, batch: Batch) -> Tensor:
+    """Share of points whose chart is predicted wrong."""
+    return (module(batch.points).argmax(dim=1) != batch.chart).float().mean()
+
+
+def uv_loss(module: Module, batch: Batch) -> Tensor:
+    """Mean absolute error of u and v given the true chart."""
+    return (module(batch.points, batch.chart) - batch.uv).abs().mean()
+
+
+def uv_error(module: Module, batch: Batch) -> Tensor:
+    """Mean distance in the network's UV square, given the true chart."""
+    return (module(batch.points, batch.chart) - batch.uv).norm(dim=1).mean()

@@ -1,0 +1,64 @@
+"""Fit several networks at once, on as many cores as asked."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Iterator
+from concurrent.futures import FIRST_EXCEPTION, ThreadPoolExecutor, wait
+from contextlib import contextmanager
+
+import torch
+
+from nispcodec.fit.task import Task
+from nispcodec.fit.train import Cancelled, train
+from nispcodec.network import Network
+from nispcodec.progress import Listener, Progress
+
+# Each network is so small that one core an operation is fastest; the networks run side by side.
+CORES_PER_OPERATION = 1
+
+
+def fit_networks(
+    tasks: list[Task], seed: int, device: str, threads: int, listen: Listener
+) -> dict[str, Network]:
+    """Fit all tasks in parallel; `threads` of them compute at any moment.
+
+    The result depends on the tasks, the seed and the device alone. An exception in one task, or
+    Ctrl-C, stops the others.
+    """
+    cores, stop = threading.Semaphore(threads), threading.Event()
+
+    def heard(progress: Progress) -> None:
+        if stop.is_set():
+            raise Cancelled
+        listen(progress)
+
+    with _single_core_operations(), ThreadPoolExecutor(len(tasks)) as pool:
+        futures = {
+            task.name: pool.submit(train, task, seed, device, cores, heard) for task in tasks
+        }
+        try:
+            done = wait(futures.values(), return_when=FIRST_EXCEPTION).done
+            for future in done:
+                future.result()
+        except BaseException:
+            stop.set()
+            raise
+    return {name: future.result() for name, future in futures.items()}
+
+
+def resolve_device(wanted: str) -> str:
+    """The torch device for "auto": CUDA when there is one, else the CPU."""
+    if wanted != "auto":
+        return wanted
+    return "cuda" if torch.cuda.is_available() else "cpu"
+
+
+@contextmanager
+def _single_core_operations() -> Iterator[None]:
+    before = torch.get_num_threads()
+    torch.set_num_threads(CORES_PER_OPERATION)
+    try:
+        yield
+    finally:
+        torch.set_num_threads(before)

@@ -1,0 +1,93 @@
+"""The presets: for each network its topology, its loss and its schedule."""
+
+from __future__ import annotations
+
+from nispcodec.document import ChartTable
+from nispcodec.fit.losses import (
+    chart_error,
+    chart_loss,
+    distance_error,
+    relative_distance_loss,
+    uv_error,
+    uv_loss,
+)
+from nispcodec.fit.task import Objective, Schedule, Task
+from nispcodec.mesh.samples import SampleSet
+from nispcodec.mesh.training import TrainingSets
+from nispcodec.network import NetworkSpec
+
+PAPER_HIDDEN = (64,) * 8
+PAPER_LEVELS = 5
+PAPER_STEPS = 60_000
+"""What some twenty minutes on two cores allow of the published 2000 epochs of 10^6 samples."""
+
+
+def tasks_for(preset: str, table: ChartTable, sets: TrainingSets) -> list[Task]:
+    """The networks to fit: a chart network for two charts or more, UV where charts have any."""
+    make = paper_tasks if preset == "paper" else balanced_tasks
+    needed = {"sdf": True, "chart": len(table) > 1, "uv": bool(table.has_uv.any())}
+    return [task for task in make(len(table), sets) if needed[task.name]]
+
+
+def balanced_tasks(charts: int, sets: TrainingSets) -> list[Task]:
+    """Small sine networks, most of the capacity near the surface, SOAP."""
+    sdf = NetworkSpec(hidden=(48,) * 4, outputs=1)
+    chart = NetworkSpec(hidden=(48,) * 3, outputs=charts)
+    uv = NetworkSpec(
+        hidden=(48,) * 4, outputs=2, conditioning="embedding", charts=charts, embedding=4
+    )
+    return _tasks(
+        sets,
+        sdf=(sdf, relative_distance_loss, Schedule(steps=12_000)),
+        chart=(chart, chart_loss, Schedule(steps=6_000)),
+        uv=(uv, uv_loss, Schedule(steps=6_000)),
+    )
+
+
+def paper_tasks(charts: int, sets: TrainingSets) -> list[Task]:
+    """The published networks, losses, optimiser and rates (paper, sections 3.2 and 4.1)."""
+    slow = Schedule(steps=PAPER_STEPS, rate=1e-4, optimiser="adam")
+    fast = Schedule(steps=PAPER_STEPS, rate=5e-4, optimiser="adam")
+    return _tasks(
+        sets,
+        sdf=(paper_sdf(), distance_error, slow),
+        chart=(paper_chart(charts), chart_loss, fast),
+        uv=(paper_uv(charts), uv_loss, fast),
+    )
+
+
+def paper_sdf() -> NetworkSpec:
+    """OverfitSDF: 31,169 weights."""
+    return NetworkSpec(PAPER_HIDDEN, 1, "fourier", PAPER_LEVELS, activation="relu", output="tanh")
+
+
+def paper_chart(charts: int) -> NetworkSpec:
+    """point2component: 31,104 + 65 k weights."""
+    return NetworkSpec(PAPER_HIDDEN, charts, "fourier", PAPER_LEVELS, w0=1.0)
+
+
+def paper_uv(charts: int) -> NetworkSpec:
+    """point2UV: 31,874 weights."""
+    return NetworkSpec(
+        PAPER_HIDDEN, 2, "fourier", PAPER_LEVELS, "scalar", charts, w0=1.0, output="sigmoid"
+    )
+
+
+Recipe = tuple[NetworkSpec, Objective, Schedule]
+
+
+def _tasks(sets: TrainingSets, sdf: Recipe, chart: Recipe, uv: Recipe) -> list[Task]:
+    """Give each network its samples and its held-out measure."""
+    distance, skin = (sets.distance, sets.held_distance), (sets.skin, sets.held_skin)
+    return [
+        _task("sdf", sdf, distance, distance_error),
+        _task("chart", chart, skin, chart_error),
+        _task("uv", uv, skin, uv_error),
+    ]
+
+
+def _task(
+    name: str, recipe: Recipe, samples: tuple[SampleSet, SampleSet], error: Objective
+) -> Task:
+    spec, loss, schedule = recipe
+    return Task(name, spec, *samples, loss, error, schedule)

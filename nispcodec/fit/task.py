@@ -1,0 +1,69 @@
+"""One network to fit: its topology, its data, what it minimises and how."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import torch
+from torch import Tensor
+
+from nispcodec.fit.module import Module
+from nispcodec.mesh.samples import SampleSet
+from nispcodec.network import NetworkSpec
+
+
+@dataclass(frozen=True)
+class Batch:
+    """Labelled points as tensors: points (n, 3), sdf (n,), chart (n,) int64, uv (n, 2)."""
+
+    points: Tensor
+    sdf: Tensor
+    chart: Tensor
+    uv: Tensor
+
+    @staticmethod
+    def of(samples: SampleSet, device: str) -> Batch:
+        """The samples on a device."""
+        return Batch(
+            torch.from_numpy(samples.points).to(device),
+            torch.from_numpy(samples.sdf).to(device),
+            torch.from_numpy(samples.chart).long().to(device),
+            torch.from_numpy(samples.uv).to(device),
+        )
+
+    def __len__(self) -> int:
+        return len(self.points)
+
+    def __getitem__(self, rows: Tensor) -> Batch:
+        return Batch(self.points[rows], self.sdf[rows], self.chart[rows], self.uv[rows])
+
+
+Objective = Callable[[Module, Batch], Tensor]
+
+
+@dataclass(frozen=True)
+class Schedule:
+    """How long and how fast: `steps` of `batch` points; `rate` is warmed up, then held or lowered.
+
+    `optimiser` is "soap" (rate warmed up, then a cosine down to a hundredth) or "adam" (rate held,
+    as the paper does).
+    """
+
+    steps: int
+    batch: int = 2048
+    rate: float = 1e-3
+    optimiser: str = "soap"
+
+
+@dataclass(frozen=True)
+class Task:
+    """Fit `spec` to `samples` by minimising `loss`; `error` on `held_out` says how good it is."""
+
+    name: str
+    spec: NetworkSpec
+    samples: SampleSet
+    held_out: SampleSet
+    loss: Objective
+    error: Objective
+    schedule: Schedule

@@ -1,0 +1,146 @@
+"""The training loop: one network, one task, the best weights by held-out error."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Callable, Iterator
+from contextlib import AbstractContextManager
+
+import torch
+from torch import Tensor
+
+from nispcodec.errors import FitError
+from nispcodec.fit.module import Module
+from nispcodec.fit.soap import Soap
+from nispcodec.fit.task import Batch, Schedule, Task
+from nispcodec.network import Network
+from nispcodec.progress import Listener, Progress
+
+WARM_UP = 100
+CLIP = 1.0
+CHECKS = 40
+CHUNK = 25
+DIVERGED = 4.0
+SETTLED = 0.25
+RETRIES = 4
+
+
+class Cancelled(Exception):
+    """The fit was told to stop."""
+
+
+def train(
+    task: Task, seed: int, device: str, core: AbstractContextManager[object], listen: Listener
+) -> Network:
+    """Fit one network; `core` is held while computing, so that tasks share the cores fairly.
+
+    A run whose held-out error explodes goes on from its best weights at half the rate. Raises
+    FitError when that does not help.
+    """
+    return _Run(task, seed, device, listen).fit(core)
+
+
+class _Run:
+    def __init__(self, task: Task, seed: int, device: str, listen: Listener) -> None:
+        self.task = task
+        self.listen = listen
+        self.generator = torch.Generator().manual_seed(seed)
+        self.module = Module(task.spec, self.generator, device)
+        self.held_out = Batch.of(task.held_out, device)
+        self.batches = _batches(Batch.of(task.samples, device), task.schedule, self.generator)
+        self.rate = task.schedule.rate
+        self.retries = 0
+        self.move = self._optimiser()
+        self.best_error = math.inf
+        self.best = self._weights()
+
+    def fit(self, core: AbstractContextManager[object]) -> Network:
+        steps = self.task.schedule.steps
+        every = max(1, steps // CHECKS)
+        started = time.monotonic()
+        loss = 0.0
+        for step in range(0, steps, CHUNK):
+            with core:
+                for inner in range(step, min(step + CHUNK, steps)):
+                    loss = self._step(inner)
+                done = min(step + CHUNK, steps)
+                note = self._check(done) if done // every > step // every or done == steps else ""
+            left = (time.monotonic() - started) / done * (steps - done)
+            self.listen(Progress(self.task.name, "fit", done, steps, loss, self.error, left, note))
+        self._restore()
+        return self.module.network()
+
+    error = math.nan
+
+    def _step(self, step: int) -> float:
+        loss = self.task.loss(self.module, next(self.batches))
+        for parameter in self.module.parameters:
+            parameter.grad = None
+        loss.backward()  # type: ignore[no-untyped-call]
+        torch.nn.utils.clip_grad_norm_(self.module.parameters, CLIP)
+        self.move(self.rate * _shape(self.task.schedule, step))
+        return float(loss.detach())
+
+    @torch.no_grad()
+    def _check(self, done: int) -> str:
+        """Measure the held-out error; keep the best weights, or go back to them."""
+        self.error = float(self.task.error(self.module, self.held_out))
+        if self.error < self.best_error:
+            self.best_error, self.best = self.error, self._weights()
+            return ""
+        settled = done >= SETTLED * self.task.schedule.steps
+        if math.isfinite(self.error) and not (settled and self.error > DIVERGED * self.best_error):
+            return ""
+        return self._retry(done)
+
+    def _retry(self, done: int) -> str:
+        self.retries += 1
+        if self.retries > RETRIES:
+            raise FitError(
+                f"{self.task.name} network: held-out error {self.error:g} after {RETRIES} retries "
+                f"at lower rates, best {self.best_error:g}: the fit does not converge"
+            )
+        self._restore()
+        self.rate /= 2
+        self.move = self._optimiser()
+        return f"diverged at step {done}: going on from the best weights at rate {self.rate:g}"
+
+    def _optimiser(self) -> Callable[[float], None]:
+        parameters, rates = self.module.parameters, self.module.rates
+        if self.task.schedule.optimiser == "soap":
+            return Soap(parameters, rates).step
+        groups = [{"params": [p], "lr": rate} for p, rate in zip(parameters, rates, strict=True)]
+        adam = torch.optim.Adam(groups)
+
+        def move(rate: float) -> None:
+            for group, relative in zip(adam.param_groups, rates, strict=True):
+                group["lr"] = rate * relative
+            adam.step()
+
+        return move
+
+    def _weights(self) -> list[Tensor]:
+        return [parameter.detach().clone() for parameter in self.module.parameters]
+
+    @torch.no_grad()
+    def _restore(self) -> None:
+        for parameter, kept in zip(self.module.parameters, self.best, strict=True):
+            parameter.copy_(kept)
+
+
+def _shape(schedule: Schedule, step: int) -> float:
+    """The rate at a step, relative to the schedule's."""
+    if schedule.optimiser == "adam":
+        return 1.0
+    cosine = 0.5 * (1 + math.cos(math.pi * step / schedule.steps))
+    return min(1.0, (step + 1) / WARM_UP) * (0.01 + 0.99 * cosine)
+
+
+def _batches(samples: Batch, schedule: Schedule, generator: torch.Generator) -> Iterator[Batch]:
+    """Every sample once in random order, again and again; a batch never straddles two rounds."""
+    size = min(schedule.batch, len(samples))
+    while True:
+        order = torch.randperm(len(samples), generator=generator).to(samples.points.device)
+        for start in range(0, len(samples) - size + 1, size):
+            yield samples[order[start : start + size]]

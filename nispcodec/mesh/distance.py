@@ -1,0 +1,73 @@
+"""Exact signed distance to a solid, and where on the mesh the closest surface point lies."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import igl
+import numpy as np
+from numpy.typing import NDArray
+
+from nispcodec.asset import FloatArray
+from nispcodec.mesh.solid import SHELL, Solid, Triangles, winding_number
+
+
+@dataclass(frozen=True)
+class Closest:
+    """(n,) signed distance; (n,) index of the closest piece; (n, 3) the closest point on it."""
+
+    sdf: FloatArray
+    piece: NDArray[np.int64]
+    point: FloatArray
+
+
+class DistanceField:
+    """The union of the bodies and of the sheets thickened by `SHELL`, as a signed distance.
+
+    libigl's own signed distance scales magnitudes by the winding number, so magnitude and sign are
+    computed apart: exact point-triangle distance, and inside where |winding number| > 1/2.
+    """
+
+    def __init__(self, solid: Solid) -> None:
+        self.solid = solid
+        self._walls = _Tree(solid, ~solid.sheet)
+        self._sheets = _Tree(solid, solid.sheet)
+
+    def closest(self, points: FloatArray, signed: bool = True) -> Closest:
+        """Signed distance (negative inside) and closest surface point of (n, 3) points.
+
+        Without `signed` all of space counts as outside, which saves most of the time.
+        """
+        points = np.ascontiguousarray(points, dtype=np.float64)
+        walls, sheets = self._walls.closest(points), self._sheets.closest(points)
+        inside = np.zeros(len(points), dtype=bool)
+        if signed:
+            inside = np.abs(winding_number(self.solid.bodies, points)) > 0.5
+        distance = np.where(inside, -walls.sdf, walls.sdf)
+        thick = sheets.sdf - SHELL
+        nearer = thick < distance
+        return Closest(
+            sdf=np.where(nearer, thick, distance),
+            piece=np.where(nearer, sheets.piece, walls.piece),
+            point=np.where(nearer[:, None], sheets.point, walls.point),
+        )
+
+
+class _Tree:
+    """Unsigned distance to some of the pieces; infinitely far when there are none."""
+
+    def __init__(self, solid: Solid, chosen: NDArray[np.bool_]) -> None:
+        self.index = np.flatnonzero(chosen)
+        triangles: Triangles = solid.pieces[self.index]
+        self.vertices = np.ascontiguousarray(triangles.reshape(-1, 3))
+        self.faces = np.arange(3 * len(triangles), dtype=np.int64).reshape(-1, 3)
+        self.tree = igl.AABB()
+        if len(self.faces):
+            self.tree.init(self.vertices, self.faces)
+
+    def closest(self, points: FloatArray) -> Closest:
+        if not len(self.faces) or not len(points):
+            nowhere = np.zeros(len(points), dtype=np.int64)
+            return Closest(np.full(len(points), np.inf), nowhere, np.zeros_like(points))
+        squared, face, point = self.tree.squared_distance(self.vertices, self.faces, points)
+        return Closest(np.sqrt(squared), self.index[face], point)

@@ -1,0 +1,189 @@
+"""Labelled training points: where they lie, how far from the surface, on which chart, which UV."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from nispcodec.asset import FloatArray, IndexArray, TexturedMesh
+from nispcodec.document import ChartTable, Frame
+from nispcodec.mesh.charts import Charts, merge_distant, split_charts
+from nispcodec.mesh.distance import Closest, DistanceField
+from nispcodec.mesh.solid import Triangles, area, build_solid
+
+BETA = 60.0
+"""Importance exp(-BETA |SDF|) of a point (paper, eq. 5)."""
+
+CUBE = 1.05
+"""Half the side of the cube that far samples fill; the extraction looks inside 1.02."""
+
+MERGE_POINTS = 30_000
+MERGE_RARE = 20
+
+Floats = NDArray[np.float32]
+
+
+@dataclass(frozen=True)
+class SampleSet:
+    """n labelled points, normalised frame: points (n, 3), sdf (n,), chart (n,), uv (n, 2).
+
+    uv is the UV network's target: the asset's UV mapped to [0, 1] by the chart table, (0, 0) on
+    charts without UV.
+    """
+
+    points: Floats
+    sdf: Floats
+    chart: IndexArray
+    uv: Floats
+
+    @staticmethod
+    def joined(parts: tuple[SampleSet, ...]) -> SampleSet:
+        """All parts, one after the other."""
+        return SampleSet(
+            np.concatenate([part.points for part in parts]),
+            np.concatenate([part.sdf for part in parts]),
+            np.concatenate([part.chart for part in parts]),
+            np.concatenate([part.uv for part in parts]),
+        )
+
+    def __len__(self) -> int:
+        return len(self.points)
+
+    def __getitem__(self, chosen: NDArray[np.bool_] | NDArray[np.integer] | slice) -> SampleSet:
+        return SampleSet(self.points[chosen], self.sdf[chosen], self.chart[chosen], self.uv[chosen])
+
+
+class Sampler:
+    """Draws and labels points around one mesh.
+
+    `gap` > 0 lets charts that are further apart than that share a number (`merge_distant`).
+    """
+
+    def __init__(self, mesh: TexturedMesh, seed: int, gap: float = 0.0) -> None:
+        self.frame = normalising_frame(mesh)
+        self._random = np.random.default_rng(seed)
+        self._corners = self.frame.to_normalised(mesh.corners)
+        self._uvs = mesh.corner_uvs
+        self.solid = build_solid(self._corners)
+        self.field = DistanceField(self.solid)
+        self.charts = split_charts(mesh)
+        if gap > 0:
+            self.charts = self._merged(gap)
+        self.table = chart_table(mesh, self.charts)
+
+    def near(self, count: int, spread: float, signed: bool = True) -> SampleSet:
+        """Points whose |SDF| is exponentially distributed with mean `spread` (exact on a plane).
+
+        A surface point moves in a random direction by a Gamma(2, spread) distance: the part of
+        that along the normal is Laplace-distributed, and edges are surrounded from all sides.
+        With spread 1 / BETA this is the density of the paper's sampler, at one query a point.
+        """
+        surface, _ = self._surface(count)
+        direction = self._random.normal(size=(count, 3))
+        direction /= np.linalg.norm(direction, axis=1, keepdims=True)
+        points = surface + direction * self._random.gamma(2.0, spread, size=(count, 1))
+        return self.label(points[np.abs(points).max(axis=1) <= CUBE], signed)
+
+    def cube(self, count: int) -> SampleSet:
+        """Points uniform in the cube [-CUBE, CUBE]^3."""
+        return self.label(self._random.uniform(-CUBE, CUBE, size=(count, 3)))
+
+    def importance(self, count: int) -> SampleSet:
+        """The paper's sampler: uniform in the unit ball, kept with weight exp(-BETA |SDF|)."""
+        candidates = self.label(uniform_ball(self._random, 10 * count))
+        weight = np.exp(-BETA * np.abs(candidates.sdf.astype(np.float64)))
+        return candidates[self._random.choice(len(candidates), count, p=weight / weight.sum())]
+
+    def surface(self, count: int) -> SampleSet:
+        """Points uniform by area on the outer faces and sheets."""
+        return self.label(self._surface(count)[0], signed=False)
+
+    def label(self, points: FloatArray, signed: bool = True) -> SampleSet:
+        """Distance, chart and UV at each point's closest surface point (paper, eq. 2)."""
+        closest = self.field.closest(points, signed)
+        face = self.solid.parents[closest.piece]
+        return SampleSet(
+            points=points.astype(np.float32),
+            sdf=closest.sdf.astype(np.float32),
+            chart=self.charts.face_charts[face],
+            uv=self._network_uv(closest, face),
+        )
+
+    def _surface(self, count: int) -> tuple[FloatArray, NDArray[np.int64]]:
+        """Points (count, 3) uniform by area, and the pieces they lie on."""
+        pieces = self.solid.pieces
+        weight = area(pieces)
+        piece = self._random.choice(len(pieces), size=count, p=weight / weight.sum())
+        weights = random_barycentric(self._random, count)
+        return np.einsum("nc,ncx->nx", weights, pieces[piece]), piece
+
+    def _merged(self, gap: float) -> Charts:
+        """Merge far charts, told by random points and one point of each piece of small charts."""
+        points, piece = self._surface(MERGE_POINTS)
+        chart = self.charts.face_charts[self.solid.parents]
+        rare = np.bincount(chart[piece], minlength=len(self.charts))[chart] < MERGE_RARE
+        return merge_distant(
+            self.charts,
+            np.concatenate([points, self.solid.pieces[rare].mean(axis=1)]),
+            np.concatenate([chart[piece], chart[rare]]),
+            gap,
+        )
+
+    def _network_uv(self, closest: Closest, face: NDArray[np.int64]) -> Floats:
+        weights = barycentric(self._corners[face], closest.point)
+        uv = np.einsum("nc,ncx->nx", weights, self._uvs[face])
+        scaled = (uv - np.asarray(self.table.uv_offset)) / np.asarray(self.table.uv_scale)
+        has_uv = self.charts.has_uv[self.charts.face_charts[face]]
+        return np.where(has_uv[:, None], scaled, 0.0).astype(np.float32)
+
+
+def normalising_frame(mesh: TexturedMesh) -> Frame:
+    """Bounding-box centre to 0, farthest vertex to radius 1; only vertices of faces count."""
+    used = mesh.positions[np.unique(mesh.faces)]
+    center = (used.min(axis=0) + used.max(axis=0)) / 2
+    radius = float(np.linalg.norm(used - center, axis=1).max())
+    return Frame((float(center[0]), float(center[1]), float(center[2])), radius)
+
+
+def chart_table(mesh: TexturedMesh, charts: Charts) -> ChartTable:
+    """The chart table, with the affine map that brings the used UVs to [0, 1]^2."""
+    used = mesh.corner_uvs[mesh.has_uv].reshape(-1, 2)
+    if not len(used):
+        return ChartTable(charts.materials, charts.has_uv)
+    low, high = used.min(axis=0), used.max(axis=0)
+    scale = np.where(high > low, high - low, 1.0)
+    return ChartTable(
+        charts.materials,
+        charts.has_uv,
+        uv_offset=(float(low[0]), float(low[1])),
+        uv_scale=(float(scale[0]), float(scale[1])),
+    )
+
+
+def barycentric(triangles: Triangles, points: FloatArray) -> FloatArray:
+    """Barycentric coordinates (n, 3) of points (n, 3) in the planes of triangles (n, 3, 3)."""
+    ab, ac = triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0]
+    ap = points - triangles[:, 0]
+    bb, bc, cc, pb, pc = (
+        (p * q).sum(axis=1) for p, q in ((ab, ab), (ab, ac), (ac, ac), (ap, ab), (ap, ac))
+    )
+    determinant = np.maximum(bb * cc - bc * bc, 1e-300)
+    v, w = (cc * pb - bc * pc) / determinant, (bb * pc - bc * pb) / determinant
+    weights = np.clip(np.stack([1 - v - w, v, w], axis=1), 0.0, 1.0)
+    return weights / weights.sum(axis=1, keepdims=True)
+
+
+def random_barycentric(random: np.random.Generator, count: int) -> FloatArray:
+    """(count, 3) barycentric coordinates, uniform over a triangle."""
+    root = np.sqrt(random.random(count))
+    second = random.random(count)
+    return np.stack([1 - root, root * (1 - second), root * second], axis=1)
+
+
+def uniform_ball(random: np.random.Generator, count: int) -> FloatArray:
+    """(count, 3) points uniform in the unit ball."""
+    direction = random.normal(size=(count, 3))
+    direction /= np.linalg.norm(direction, axis=1, keepdims=True)
+    return direction * np.cbrt(random.random((count, 1)))

@@ -1,0 +1,200 @@
+"""What of a mesh a signed distance can hold: outer faces, hidden faces dropped, sheets thickened.
+
+Real assets are many bodies pushed into each other, with holes where nobody looks. The winding
+number says what is inside; the part of the mesh that lies inside other bodies is hidden and cannot
+be the zero set of any SDF; open sheets (cards, cloth, leaves) have no inside and get a thickness.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import igl
+import numpy as np
+from numpy.typing import NDArray
+
+from nispcodec.asset import FloatArray
+from nispcodec.mesh.charts import connected_faces, row_ids
+
+OFFSET = 2e-3
+"""How far off a face (normalised frame) one looks to tell which of its sides are inside."""
+
+SHELL = 4e-3
+"""Half the thickness (normalised frame) given to sheets."""
+
+COARSE_EDGE = 0.1
+FINE_EDGE = 0.02
+OPENNESS = 0.25
+GAP = 5e-3
+
+Triangles = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Solid:
+    """A mesh in the normalised frame, sorted by what an SDF can hold.
+
+    pieces  (p, 3, 3) float64: the outer faces and sheets, large ones subdivided
+    parents (p,) int: the mesh face that each piece is part of
+    sheet   (p,) bool: pieces that get a thickness
+    bodies  (q, 3, 3) float64: the closed or nearly closed faces, whose winding number is the sign
+    hidden_share, sheet_share: of the mesh's area
+    """
+
+    pieces: Triangles
+    parents: NDArray[np.int64]
+    sheet: NDArray[np.bool_]
+    bodies: Triangles
+    hidden_share: float
+    sheet_share: float
+
+
+def build_solid(corners: Triangles) -> Solid:
+    """Sort the faces (m, 3, 3), normalised frame."""
+    open_faces = _open_bodies(corners)
+    bodies = corners[~open_faces]
+    pieces, parents, kind = _classify(bodies, np.flatnonzero(~open_faces))
+    hidden = kind == _HIDDEN
+    total = area(corners).sum()
+    sheets = np.flatnonzero(open_faces)
+    all_pieces = np.concatenate([pieces[~hidden], corners[sheets]])
+    is_sheet = np.concatenate([kind[~hidden] == _SHEET, np.ones(len(sheets), dtype=bool)])
+    return Solid(
+        pieces=all_pieces,
+        parents=np.concatenate([parents[~hidden], sheets]),
+        sheet=is_sheet,
+        bodies=bodies,
+        hidden_share=float(area(pieces[hidden]).sum() / total),
+        sheet_share=float(area(all_pieces[is_sheet]).sum() / total),
+    )
+
+
+def area(triangles: Triangles) -> FloatArray:
+    """(n, 3, 3) -> (n,)."""
+    doubled: FloatArray = np.linalg.norm(_cross(triangles), axis=1)
+    return doubled / 2
+
+
+def normals(triangles: Triangles) -> FloatArray:
+    """(n, 3, 3) -> (n, 3), unit length; zero for degenerate triangles."""
+    cross = _cross(triangles)
+    length = np.linalg.norm(cross, axis=1, keepdims=True)
+    return np.divide(cross, length, out=np.zeros_like(cross), where=length > 0)
+
+
+def winding_number(bodies: Triangles, points: FloatArray) -> FloatArray:
+    """Generalised winding number of the triangle soup at (n, 3) points -> (n,)."""
+    if not len(bodies) or not len(points):
+        return np.zeros(len(points))
+    faces = np.arange(3 * len(bodies), dtype=np.int64).reshape(-1, 3)
+    vertices = np.ascontiguousarray(bodies.reshape(-1, 3))
+    winding: FloatArray = igl.fast_winding_number(vertices, faces, np.ascontiguousarray(points))
+    return winding
+
+
+_OUTER, _HIDDEN, _SHEET, _MIXED = range(4)
+
+
+def _classify(
+    bodies: Triangles, parents: NDArray[np.int64]
+) -> tuple[Triangles, NDArray[np.int64], NDArray[np.int64]]:
+    """Subdivide the faces until each piece is of one kind: pieces, their parents, their kinds."""
+    done: list[tuple[Triangles, NDArray[np.int64], NDArray[np.int64]]] = []
+    todo, todo_parents = bodies, parents
+    while len(todo):
+        longest = _longest_edge(todo)
+        kind = _kind(bodies, todo, single=longest <= FINE_EDGE)
+        split = (longest > COARSE_EDGE) | (kind == _MIXED)
+        kind = np.where(kind == _MIXED, _OUTER, kind)
+        keep = ~split | (longest <= FINE_EDGE)
+        done.append((todo[keep], todo_parents[keep], kind[keep]))
+        todo, todo_parents = _subdivide(todo[~keep]), np.repeat(todo_parents[~keep], 4)
+    pieces, owners, kinds = zip(*done, strict=True) if done else ((bodies,), (parents,), (parents,))
+    return np.concatenate(pieces), np.concatenate(owners), np.concatenate(kinds)
+
+
+def _kind(bodies: Triangles, pieces: Triangles, single: NDArray[np.bool_]) -> NDArray[np.int64]:
+    """Kind of each piece from its centroid, and for all but the small ones from its corners too."""
+    kind = _point_kind(bodies, pieces, np.full(3, 1 / 3))
+    large = np.flatnonzero(~single)
+    for corner in range(3):
+        weights = np.full(3, 0.05)
+        weights[corner] = 0.9
+        other = _point_kind(bodies, pieces[large], weights)
+        kind[large] = np.where(other == kind[large], other, _MIXED)
+    return kind
+
+
+def _point_kind(bodies: Triangles, pieces: Triangles, weights: FloatArray) -> NDArray[np.int64]:
+    """Across a face the winding number falls by exactly one, so one look in front is enough."""
+    points = np.einsum("c,ncx->nx", weights, pieces) + OFFSET * normals(pieces)
+    front = winding_number(bodies, points)
+    front_inside, back_inside = np.abs(front) > 0.5, np.abs(front + 1) > 0.5
+    return np.select(
+        [front_inside & back_inside, ~front_inside & ~back_inside], [_HIDDEN, _SHEET], _OUTER
+    )
+
+
+def _open_bodies(corners: Triangles) -> NDArray[np.bool_]:
+    """Faces of bodies with large openings that no other body plugs.
+
+    Closing such an opening, as the winding number does, would draw a membrane that nobody
+    modelled. Openings within `GAP` of the mesh (flat cards, panels) need no such care.
+    """
+    vertices = row_ids(corners.reshape(-1, 3)).reshape(-1, 3)
+    body = connected_faces(vertices)
+    opening, centre, owner = _openings(corners, vertices, body)
+    exposed = (np.abs(winding_number(corners, centre)) < 0.8) & (_gap(corners, centre) > GAP)
+    count = int(body.max()) + 1
+    open_area = np.bincount(owner[exposed], weights=opening[exposed], minlength=count)
+    openness = open_area / np.maximum(np.bincount(body, weights=area(corners)), 1e-30)
+    mask: NDArray[np.bool_] = (openness > OPENNESS)[body]
+    return mask
+
+
+def _gap(corners: Triangles, points: FloatArray) -> FloatArray:
+    if not len(points):
+        return np.zeros(0)
+    faces = np.arange(3 * len(corners), dtype=np.int64).reshape(-1, 3)
+    vertices = np.ascontiguousarray(corners.reshape(-1, 3))
+    squared: FloatArray = igl.point_mesh_squared_distance(points, vertices, faces)[0]
+    return np.sqrt(squared)
+
+
+def _openings(
+    corners: Triangles, vertices: NDArray[np.int64], body: NDArray[np.integer]
+) -> tuple[FloatArray, FloatArray, NDArray[np.integer]]:
+    """Fan triangles that close every boundary loop: their areas, centres and bodies."""
+    start = vertices.reshape(-1)
+    end = np.roll(vertices, -1, axis=1).reshape(-1)
+    low, high = np.minimum(start, end), np.maximum(start, end)
+    _, edge = np.unique(low * (int(vertices.max()) + 1) + high, return_inverse=True)
+    balance = np.bincount(edge.reshape(-1), weights=np.where(start < end, 1, -1))
+    boundary = np.flatnonzero(balance[edge.reshape(-1)] != 0)
+    first = corners.reshape(-1, 3)[boundary]
+    second = np.roll(corners, -1, axis=1).reshape(-1, 3)[boundary]
+    owner = np.repeat(body, 3)[boundary]
+    loop = connected_faces(np.stack([start, end, start], axis=1)[boundary]) if len(first) else owner
+    size = np.maximum(np.bincount(loop), 1)[:, None] if len(loop) else np.ones((1, 1))
+    middle = np.stack([np.bincount(loop, weights=first[:, a]) for a in range(3)], axis=1) / size
+    fan = np.stack([first, second, middle[loop]], axis=1)
+    return area(fan), fan.mean(axis=1), owner
+
+
+def _subdivide(triangles: Triangles) -> Triangles:
+    """Each triangle into four through its edge midpoints, children of one parent together."""
+    a, b, c = triangles[:, 0], triangles[:, 1], triangles[:, 2]
+    ab, bc, ca = (a + b) / 2, (b + c) / 2, (c + a) / 2
+    children = [(a, ab, ca), (ab, b, bc), (ca, bc, c), (ab, bc, ca)]
+    stacked = np.stack([np.stack(child, axis=1) for child in children], axis=1)
+    return stacked.reshape(-1, 3, 3)
+
+
+def _longest_edge(triangles: Triangles) -> FloatArray:
+    edges = triangles - np.roll(triangles, 1, axis=1)
+    longest: FloatArray = np.linalg.norm(edges, axis=2).max(axis=1, initial=0.0)
+    return longest
+
+
+def _cross(triangles: Triangles) -> FloatArray:
+    return np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0])

@@ -1,0 +1,48 @@
+"""Which samples the networks learn from and are judged by, for each preset."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from nispcodec.mesh.samples import BETA, Sampler, SampleSet
+
+TIGHT = 1 / 250
+"""Mean distance (normalised frame) of the samples that sharpen the zero set."""
+
+SKIN = 3e-3
+"""Mean distance of the samples for charts and UVs: decisions far from the surface are wasted."""
+
+HELD_OUT = 30_000
+PAPER_SAMPLES = 1_000_000
+
+
+@dataclass(frozen=True)
+class TrainingSets:
+    """Samples to fit the SDF (`distance`) and the charts and UVs (`skin`), and held-out ones."""
+
+    distance: SampleSet
+    skin: SampleSet
+    held_distance: SampleSet
+    held_skin: SampleSet
+
+
+def training_sets(sampler: Sampler) -> TrainingSets:
+    """Near the surface for the most part; the whole cube for the sign far away."""
+    distance = (
+        sampler.near(350_000, 1 / BETA),
+        sampler.near(150_000, TIGHT),
+        sampler.cube(100_000),
+    )
+    return TrainingSets(
+        distance=SampleSet.joined(distance),
+        skin=sampler.near(400_000, SKIN, signed=False),
+        held_distance=sampler.near(HELD_OUT, SKIN),
+        held_skin=sampler.surface(HELD_OUT),
+    )
+
+
+def paper_training_sets(sampler: Sampler) -> TrainingSets:
+    """The paper's: importance samples for all networks, judged on the surface (section 4.1)."""
+    samples = sampler.importance(PAPER_SAMPLES)
+    surface = sampler.surface(HELD_OUT)
+    return TrainingSets(samples, samples, sampler.near(HELD_OUT, SKIN), surface)

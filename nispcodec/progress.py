@@ -1,0 +1,37 @@
+"""What a long encode tells whoever waits for it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Progress:
+    """One moment of an encode.
+
+    network       "sdf", "chart" or "uv"; "" for a stage of the whole encode
+    stage         what is being done, in a word or two
+    step, steps   how far it is
+    loss          training loss, smoothed
+    error         held-out error: sdf mean distance (normalised), chart share of wrong labels,
+                  uv mean distance in the network's [0, 1]^2 given the true chart
+    seconds_left  estimate for this network
+    note          something worth a line of its own, such as a retry
+    """
+
+    network: str = ""
+    stage: str = ""
+    step: int = 0
+    steps: int = 0
+    loss: float = float("nan")
+    error: float = float("nan")
+    seconds_left: float = float("nan")
+    note: str = ""
+
+
+Listener = Callable[[Progress], None]
+
+
+def silent(_: Progress) -> None:
+    """Listens to nothing."""
