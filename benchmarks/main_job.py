@@ -99,7 +99,7 @@ def distortion(original: TexturedMesh, decoded: TexturedMesh, model: Path) -> Re
     """Every metric of design.md section 6, of the decoded file as read back."""
     queried = NispModel(unpack(model.read_bytes()))
     charts = split_charts(original).face_charts
-    report = compare(original, decoded, face_charts=charts, decoded_charts=queried.charts)
+    report = compare(original, decoded, face_charts=charts, model=queried)
     return {**report, "pictures": pictures(original, decoded)}
 
 

@@ -28,7 +28,7 @@ def command(
     """Measure DECODED (a .nisp or a mesh file) against the mesh file ORIGINAL.
 
     Distances are in the normalised frame of the original. A .nisp is decoded as `nisp decode`
-    does, and its chart accuracy is told when it has as many charts as the original.
+    does, and asked for the charts too.
 
     \b
     Example: nisp compare model.obj model.nisp
@@ -64,7 +64,5 @@ def _compare_model(
     from nispcodec.metrics.compare import compare
 
     model = nispcodec.load(path)
-    charts = split_charts(original)
-    if len(charts) == len(model.document.charts):
-        how |= {"face_charts": charts.face_charts, "decoded_charts": model.charts}
-    return compare(original, model.to_mesh(resolution), **how)
+    charts = split_charts(original).face_charts
+    return compare(original, model.to_mesh(resolution), face_charts=charts, model=model, **how)

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from nispcodec.asset import TexturedMesh
     from nispcodec.decode.model import NispModel
 
-PRESETS = ("paper", "fast", "balanced", "best")
+PRESETS = ("balanced", "paper")
 IMAGE_FORMATS = ("webp", "avif", "jpeg")
 
 
@@ -24,7 +24,9 @@ IMAGE_FORMATS = ("webp", "avif", "jpeg")
 @click.argument("mesh", type=click.Path(path_type=Path))
 @output_option(".nisp")
 @click.option("--preset", type=click.Choice(PRESETS), default="balanced", show_default=True)
-@click.option("--seed", type=int, default=0, show_default=True, help="Of everything random.")
+@click.option(
+    "--seed", type=click.IntRange(0), default=0, show_default=True, help="Of everything random."
+)
 @click.option("--device", default="auto", show_default=True, help="auto, cpu, cuda, mps.")
 @click.option("--threads", type=click.IntRange(0), default=0, help="0, the default: all cores.")
 @click.option("--unwrap", is_flag=True, help="Make new UVs with xatlas (drops the textures).")

@@ -1,4 +1,4 @@
-"""Output files: refused early when they cannot be written, never left half written."""
+"""Output files are refused before the work when they cannot be written."""
 
 from __future__ import annotations
 
@@ -26,13 +26,3 @@ def output_option(*suffixes: str) -> Callable[[Callable[..., None]], Callable[..
     kind = click.Path(path_type=Path)
     text = ", ".join(suffixes)
     return click.option("-o", "--output", type=kind, required=True, callback=checked, help=text)
-
-
-def write_whole(path: Path, data: bytes) -> None:
-    """Write a sibling temporary file, then rename it."""
-    temporary = path.with_name(f".{path.name}.{os.getpid()}")
-    try:
-        temporary.write_bytes(data)
-        temporary.replace(path)
-    finally:
-        temporary.unlink(missing_ok=True)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from .files import output_option, write_whole
+from .files import output_option
 
 if TYPE_CHECKING:
     import numpy as np
@@ -35,6 +35,7 @@ def command(model: Path, points: Path, output: Path, frame: str) -> None:
     Example: nisp query model.nisp points.npy -o answers.npz
     """
     import nispcodec
+    from nispcodec.output import write_atomic
 
     asked = read_points(points)
     loaded = nispcodec.load(model)
@@ -45,7 +46,7 @@ def command(model: Path, points: Path, output: Path, frame: str) -> None:
         "color": loaded.color(asked, frame),
     }
     write = _csv if output.suffix.lower() == ".csv" else _npz
-    write_whole(output, write(asked, answers))
+    write_atomic(output, write(asked, answers))
     click.echo(f"{output}: {len(asked):,} points")
 
 

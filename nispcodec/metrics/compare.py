@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 import numpy as np
-from numpy.typing import NDArray
 
 from nispcodec.asset import TexturedMesh
+from nispcodec.metrics.charts import Chooser, Labels, chart_accuracy, model_labels
 from nispcodec.metrics.color import color_psnr
 from nispcodec.metrics.geometry import (
     Matches,
@@ -20,12 +18,11 @@ from nispcodec.metrics.parameterisation import distortion_summary
 from nispcodec.metrics.sides import sides_of
 from nispcodec.metrics.spurious import spurious_components
 from nispcodec.metrics.surface import Array, Surface, SurfacePoints, frame_of
-from nispcodec.metrics.uv import chart_accuracy, uv_errors, uv_summary
+from nispcodec.metrics.uv import uv_at, uv_errors, uv_summary
 
 Directions = dict[str, Matches]
 Group = dict[str, float | dict[str, float]]
 Report = dict[str, Group]
-ChartQuery = Callable[[Array], NDArray[np.integer]]
 
 
 def compare(
@@ -34,15 +31,15 @@ def compare(
     *,
     samples: int = 100_000,
     seed: int = 0,
-    face_charts: NDArray[np.integer] | None = None,
-    decoded_charts: ChartQuery | None = None,
+    face_charts: Labels | None = None,
+    model: Chooser | None = None,
 ) -> Report:
     """Distortion of `decoded` against `original`, in the normalised frame of the original.
 
     `samples` points are drawn from each surface, uniformly by area; of those on the original only
-    the outer ones count. `face_charts` (m,) names the chart of each of the original's faces and
-    `decoded_charts` answers (n, 3) world points with (n,) charts; the chart accuracy is there when
-    both are given, uv and color when the original has UVs. The same seed gives the same numbers.
+    the outer ones count. The chart accuracy is there when `face_charts` (m,), the chart of each of
+    the original's faces, and the `model` to ask are given; uv when the original has UVs. The same
+    seed gives the same numbers.
     Raises MeshError when a mesh has no surface.
     """
     frame = frame_of(original)
@@ -61,9 +58,8 @@ def compare(
         report["uv"] = _uv(first, second, directions)
         report["parameterisation"] = _parameterisation(first, second)
     report["color"] = {"psnr": color_psnr(first, second, directions.values())}
-    if face_charts is not None and decoded_charts is not None:
-        predicted = decoded_charts(frame.to_world(seen.positions))
-        report["charts"] = {"accuracy": chart_accuracy(face_charts[seen.faces], predicted)}
+    if face_charts is not None and model is not None:
+        report["charts"] = _charts(first, seen, frame.to_world(seen.positions), face_charts, model)
     return report
 
 
@@ -92,6 +88,14 @@ def _geometry(original: Surface, decoded: Surface, directions: Directions) -> Gr
 def _uv(original: Surface, decoded: Surface, directions: Directions) -> Group:
     errors = {name: uv_errors(original, decoded, each) for name, each in directions.items()}
     return _with_larger({name: uv_summary(each) for name, each in errors.items() if len(each)})
+
+
+def _charts(
+    original: Surface, seen: SurfacePoints, world: Array, face_charts: Labels, model: Chooser
+) -> Group:
+    predicted = model.charts(world)
+    labels = model_labels(model, world, uv_at(original, seen), face_charts[seen.faces], predicted)
+    return {"accuracy": chart_accuracy(labels, predicted)}
 
 
 def _parameterisation(original: Surface, decoded: Surface) -> Group:

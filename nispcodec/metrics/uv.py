@@ -1,9 +1,8 @@
-"""How far texture coordinates and charts of paired points differ."""
+"""How far the texture coordinates of paired points differ."""
 
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from nispcodec.metrics.geometry import Matches
 from nispcodec.metrics.surface import Array, Surface, SurfacePoints
@@ -31,8 +30,3 @@ def uv_summary(errors: Array) -> dict[str, float]:
         "median": float(np.median(errors)),
         "p99": float(np.percentile(errors, 99)),
     }
-
-
-def chart_accuracy(labels: NDArray[np.integer], predicted: NDArray[np.integer]) -> float:
-    """Share of points (n,) whose predicted chart is the true one."""
-    return float((np.asarray(labels) == np.asarray(predicted)).mean())

@@ -4,10 +4,12 @@ import json
 from pathlib import Path
 
 import pytest
+from nispcodec_cli import encode
 from nispcodec_cli.progress import Bars, Lines, described, duration
 
 import nispcodec
 from nispcodec.decode.model import NispModel
+from nispcodec.encoder import PRESETS
 from nispcodec.errors import FitError
 from nispcodec.progress import Progress
 from tests import tiny
@@ -141,3 +143,7 @@ def test_bars_keep_one_row_a_network(capsys) -> None:
 def test_duration() -> None:
     assert duration(8.4) == "8 s"
     assert duration(119.6) == "2 min 0 s"
+
+
+def test_presets_are_those_of_the_encoder() -> None:
+    assert encode.PRESETS == PRESETS

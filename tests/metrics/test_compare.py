@@ -87,15 +87,24 @@ def test_one_chart_moved_in_the_atlas_is_caught() -> None:
     assert report["uv"]["larger"]["mean"] == pytest.approx(0.125, rel=0.1)
 
 
+class Halves:
+    """Two charts, divided at world x = `border`, with the same UV: (x - 10, y) and (x - 11, y)."""
+
+    def __init__(self, border: float) -> None:
+        self.border = border
+
+    def charts(self, points):
+        return (points[:, 0] > self.border).astype(np.int32)
+
+    def uv(self, points, *, charts):
+        return np.stack([points[:, 0] - 10 - charts, points[:, 1]], axis=1)
+
+
 def test_chart_accuracy_asks_in_the_world_frame() -> None:
     mesh = joined(moved(plane(), (10, 0, 0)), moved(plane(), (11, 0, 0)))
     labels = np.repeat([0, 1], len(mesh.faces) // 2)
-    right = compare(
-        mesh, mesh, samples=FEW, face_charts=labels, decoded_charts=lambda p: p[:, 0] > 11
-    )
-    wrong = compare(
-        mesh, mesh, samples=FEW, face_charts=labels, decoded_charts=lambda p: p[:, 0] > 11.5
-    )
+    right = compare(mesh, mesh, samples=FEW, face_charts=labels, model=Halves(11))
+    wrong = compare(mesh, mesh, samples=FEW, face_charts=labels, model=Halves(11.5))
     assert right["charts"]["accuracy"] == 1
     assert wrong["charts"]["accuracy"] == pytest.approx(0.75, abs=0.03)
 

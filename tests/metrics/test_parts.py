@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 
 from nispcodec.errors import QueryError
+from nispcodec.metrics.charts import chart_accuracy, model_labels
 from nispcodec.metrics.color import color_at
 from nispcodec.metrics.parameterisation import distortion_summary, triangle_distortions
 from nispcodec.metrics.pictures import compare_pictures
 from nispcodec.metrics.psnr import CEILING, psnr
 from nispcodec.metrics.spurious import components, spurious_components
 from nispcodec.metrics.surface import Surface, frame_of
-from nispcodec.metrics.uv import chart_accuracy
 from tests.metrics.shapes import joined, moved, plane, sphere, textured
 
 
@@ -98,6 +98,56 @@ def test_chart_accuracy_counts_matches() -> None:
     assert chart_accuracy(np.array([0, 1, 2, 2]), np.array([0, 1, 1, 2])) == 0.75
 
 
+class Halves:
+    """Chart 0 where x < border, 1 elsewhere; chart c has the UV (x, y + c), or none."""
+
+    def __init__(self, border: float = 0.0, textured: bool = True) -> None:
+        self.border, self.textured = border, textured
+
+    def charts(self, points):
+        return (points[:, 0] >= self.border).astype(np.int32)
+
+    def uv(self, points, *, charts):
+        return (points[:, :2] + np.stack([0 * charts, charts], axis=1)) * self.textured
+
+
+def accuracy(model: Halves, charts, uvs, points) -> float:
+    predicted = model.charts(points)
+    return chart_accuracy(model_labels(model, points, uvs, charts, predicted), predicted)
+
+
+@pytest.mark.parametrize("numbering", [(0, 1), (1, 0), (7, 3)])
+def test_chart_accuracy_whatever_the_numbering(numbering: tuple[int, int]) -> None:
+    points = np.random.default_rng(0).uniform(-1, 1, (4000, 3))
+    side = (points[:, 0] >= 0).astype(int)
+    uvs = points[:, :2] + np.stack([0 * side, side], axis=1)
+    charts = np.asarray(numbering)[side]
+    assert accuracy(Halves(), charts, uvs, points) == 1
+    assert accuracy(Halves(border=0.5), charts, uvs, points) == pytest.approx(0.75, abs=0.03)
+
+
+def test_swapped_charts_are_all_wrong() -> None:
+    points = np.random.default_rng(0).uniform(-1, 1, (400, 3))
+    side = (points[:, 0] >= 0).astype(int)
+    swapped = points[:, :2] + np.stack([0 * side, 1 - side], axis=1)
+    assert accuracy(Halves(), side, swapped, points) == 0
+
+
+def test_several_charts_may_share_a_number() -> None:
+    points = np.random.default_rng(0).uniform(-1, 1, (4000, 3))
+    side = (points[:, 0] >= 0).astype(int)
+    uvs = points[:, :2] + np.stack([0 * side, side], axis=1)
+    quarters = side + 2 * (points[:, 1] > 0)
+    assert accuracy(Halves(), quarters, uvs, points) == 1
+
+
+def test_without_uv_the_most_predicted_number_is_the_true_one() -> None:
+    points = np.random.default_rng(0).uniform(-1, 1, (4000, 3))
+    side = (points[:, 0] >= 0).astype(int)
+    model = Halves(border=0.1, textured=False)
+    assert accuracy(model, side, np.zeros((4000, 2)), points) == pytest.approx(0.95, abs=0.02)
+
+
 def test_psnr_of_known_error_and_of_none() -> None:
     assert psnr(0.01, 1.0) == pytest.approx(20)
     assert psnr(0.0, 1.0) == CEILING
@@ -124,5 +174,5 @@ def test_faces_without_uv_show_the_factor() -> None:
     surface = surface_of(dataclasses.replace(mesh, uv_faces=uv_faces))
     points = surface.sample(400, np.random.default_rng(0))
     colors = color_at(surface, points)
-    assert (colors[points.faces == 0] == 1).all()
+    np.testing.assert_allclose(colors[points.faces == 0], 1, atol=1e-6)
     assert set(np.unique(colors[points.faces == 1][:, 0].round(6))) >= {0.0, 1.0}
