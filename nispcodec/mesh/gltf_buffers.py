@@ -98,12 +98,13 @@ class Buffers:
         """(n, width) float64 of an accessor; normalised integers become fractions."""
         accessor = self._root.entry("accessors", index)
         values = self._values(accessor, width)
+        finite = np.isfinite(values).all(axis=1)
+        if not finite.all():
+            element = int(finite.argmin())
+            accessor.fail(f"finite numbers in element {element}", values[element].tolist())
         numbers = values.astype(np.float64)
         if accessor.flag("normalized") and values.dtype.kind in "iu":
             numbers = np.maximum(numbers / np.iinfo(values.dtype).max, -1.0)
-        if not np.isfinite(numbers).all():
-            element = int(np.argmin(np.isfinite(numbers).all(axis=1)))
-            accessor.fail(f"finite numbers in element {element}", numbers[element].tolist())
         return numbers
 
     def indices(self, index: int) -> NDArray[np.int64]:

@@ -8,6 +8,7 @@ import struct
 import warnings
 from pathlib import PurePath
 
+import numpy as np
 import PIL.Image
 
 from nispcodec.asset import Texture
@@ -56,6 +57,12 @@ class TextureShelf:
         taken = {texture.name.casefold() for texture in self.textures}
         names = (f"{stem}{'' if count == 1 else f'_{count}'}{suffix}" for count in range(1, 10**9))
         return next(name for name in names if name.casefold() not in taken)
+
+
+def is_grey(data: bytes, place: str) -> bool:
+    """Whether an image has no colour anywhere, by a coarse look."""
+    small = _decoded(data, place).convert("RGB").resize((64, 64), PIL.Image.Resampling.NEAREST)
+    return bool(np.ptp(np.asarray(small, dtype=np.int16), axis=2).max() <= 2)
 
 
 def _decoded(data: bytes, place: str) -> PIL.Image.Image:

@@ -9,7 +9,7 @@ from nispcodec.asset import Material, Texture, TextureMap
 from nispcodec.errors import MeshError
 from nispcodec.mesh import wavefront
 from nispcodec.mesh.folder import Folder
-from nispcodec.mesh.images import TextureShelf
+from nispcodec.mesh.images import TextureShelf, is_grey
 
 # Keyword of an image statement -> slot; of two for one slot the first in this list wins.
 SLOT_OF = {
@@ -172,19 +172,26 @@ class MaterialReader:
         ordered = [key for key in SLOT_OF if key in found.maps]
         for keyword in ordered:
             slot = SLOT_OF[keyword]
-            made = None if slot in maps else self._map(found.maps[keyword])
+            made = None if slot in maps else self._map(keyword, found.maps[keyword])
             if made is not None:
                 maps[slot] = made
         self._warn_of_others(found)
         return maps
 
-    def _map(self, statement: MapStatement) -> TextureMap | None:
+    def _map(self, keyword: str, statement: MapStatement) -> TextureMap | None:
         path = self._folder.find(statement.reference)
         if path is None:
             self._warnings.append(f"{statement.place}: image {statement.reference!r} not found")
             return None
+        data = self._folder.read(path)
+        if "bump" in keyword and is_grey(data, str(path)):
+            self._warnings.append(
+                f"{statement.place}: {statement.reference!r} is a grey height map, "
+                "not a normal map: left out"
+            )
+            return None
         self._warn_of_options(statement)
-        texture = self._shelf.add(path.name, self._folder.read(path), str(path))
+        texture = self._shelf.add(path.name, data, str(path))
         clamped = statement.options.get("-clamp", [""])[0].lower() == "on"
         wrap = "clamp" if clamped else "repeat"
         return TextureMap(texture, (wrap, wrap), strength=_strength(statement))

@@ -65,14 +65,14 @@ def geometry_only(positions: FloatArray, faces: NDArray[np.int64], name: str) ->
 
 def _binary_facets(data: bytes, count: int, name: str) -> tuple[FloatArray, NDArray[np.int64]]:
     facet = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
-    corners = np.frombuffer(data, facet, count, _STL_HEADER)["corners"].astype(np.float64)
+    corners = np.frombuffer(data, facet, count, _STL_HEADER)["corners"]
     finite = np.isfinite(corners).all(axis=(1, 2))
     if not finite.all():
         raise MeshError(
             f"{name}: facet {int(finite.argmin())}: expected finite coordinates, "
             f"found NaN or infinity"
         )
-    return corners.reshape(-1, 3), np.arange(3 * count).reshape(-1, 3)
+    return corners.reshape(-1, 3).astype(np.float64), np.arange(3 * count).reshape(-1, 3)
 
 
 def _text_facets(data: bytes, name: str) -> tuple[FloatArray, NDArray[np.int64]]:

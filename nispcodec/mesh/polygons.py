@@ -26,7 +26,8 @@ def triangulate(points: Points, sizes: Indices) -> tuple[Indices, Indices]:
     for size in np.unique(sizes):
         polygons = np.flatnonzero(sizes == size)
         corners = starts[polygons, None] + np.arange(size)
-        cuts = _cut_all(points[corners])
+        with np.errstate(over="ignore", invalid="ignore"):  # absurd sizes are refused later
+            cuts = _cut_all(points[corners])
         triangles.append(np.take_along_axis(corners[:, None, :], cuts, axis=2).reshape(-1, 3))
         owners.append(np.repeat(polygons, size - 2))
     if not triangles:

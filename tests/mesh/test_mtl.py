@@ -61,8 +61,15 @@ def test_every_name_of_a_normal_map(tmp_path: Path, keyword: str):
 
 
 def test_norm_goes_before_bump(tmp_path: Path):
-    mesh = load(tmp_path, "bump b.png\nnorm n.png\n", n_png=image(), b_png=image(color=(0, 0, 0)))
+    mesh = load(tmp_path, "bump b.png\nnorm n.png\n", n_png=image(), b_png=image(color=(0, 0, 9)))
     assert [texture.name for texture in mesh.textures] == ["n.png"]
+
+
+def test_a_grey_bump_is_no_normal_map(tmp_path: Path):
+    mesh = load(tmp_path, "map_Bump b.png\n", b_png=image(color=(90, 90, 90)))
+    assert mesh.materials[0].maps == {}
+    assert mesh.textures == ()
+    assert mesh.warnings == ("a.mtl:2: 'b.png' is a grey height map, not a normal map: left out",)
 
 
 def test_emissive_map_without_factor_shines(tmp_path: Path):

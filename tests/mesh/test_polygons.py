@@ -66,3 +66,9 @@ def test_any_polygon_gives_two_triangles_fewer_than_corners(corners):
     triangles, _ = triangulate(points, np.array([len(corners)]))
     assert triangles.shape == (len(corners) - 2, 3)
     assert set(triangles.flatten()) == set(range(len(corners)))
+
+
+@pytest.mark.filterwarnings("error")
+def test_absurd_coordinates_pass_in_silence():
+    points = np.array([(0, 0, 0), (1e300, 0, 0), (1e300, 1e300, 0), (0, 1e300, 0)])
+    assert len(triangulate(points, np.array([4]))[0]) == 2
