@@ -15,12 +15,12 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
 from nispcodec.decode.evaluate import gradient
-from nispcodec.decode.extract import Surface
+from nispcodec.decode.extract import LIMIT, Surface
 from nispcodec.network import Network
 
 OUTSIDE = 1.01
-TINY_FACES = 64
-TINY_SHARE = 2e-3
+SMALL_FACES = 64
+SMALL_SHARE = 2e-3
 SLOPES = (0.5, 1.5)
 
 Integers = NDArray[np.int32]
@@ -28,12 +28,29 @@ Integers = NDArray[np.int32]
 
 @dataclass(frozen=True)
 class ExtractionReport:
-    """What the extraction found: counts of connected components and of the dropped ones' faces."""
+    """What was extracted: cells along the cube's edge, connected components, dropped noise."""
 
     resolution: int
     kept: int
     dropped: int
     dropped_faces: int
+
+
+def without_noise(
+    network: Network, surface: Surface, keep: bool = False
+) -> tuple[Surface, ExtractionReport]:
+    """The surface without spurious components, unless they are to be kept, and the counts."""
+    unwanted, labels = spurious(network, surface)
+    if keep:
+        unwanted[:] = False
+    cleaned = without(surface, unwanted, labels)
+    report = ExtractionReport(
+        resolution=round(2 * LIMIT / surface.cell),
+        kept=int((~unwanted).sum()),
+        dropped=int(unwanted.sum()),
+        dropped_faces=len(surface.faces) - len(cleaned.faces),
+    )
+    return cleaned, report
 
 
 def components(surface: Surface) -> tuple[int, Integers]:
@@ -47,18 +64,23 @@ def components(surface: Surface) -> tuple[int, Integers]:
 
 
 def spurious(network: Network, surface: Surface) -> tuple[NDArray[np.bool_], Integers]:
-    """Which components are noise (c,) bool, and the component of each vertex (n,)."""
+    """Which components are noise (c,) bool, and the component of each vertex (n,).
+
+    A component is noise when all of it lies outside the unit ball, or when it is small and the
+    field's mean slope on it is far from 1.
+    """
     count, labels = components(surface)
-    vertices = np.bincount(labels, minlength=count)
-    faces = np.bincount(labels[surface.faces[:, 0]], minlength=count)
-    slopes = np.linalg.norm(gradient(network, surface.positions)[1], axis=1)
-    slope = np.bincount(labels, slopes, minlength=count) / vertices
     distance = np.linalg.norm(surface.positions, axis=1)
     nearest = np.full(count, np.inf)
     np.minimum.at(nearest, labels, distance)
-    tiny = faces < max(TINY_FACES, TINY_SHARE * len(surface.faces))
-    unconfirmed = (slope < SLOPES[0]) | (slope > SLOPES[1])
-    return (nearest > OUTSIDE) | (tiny & unconfirmed), labels
+    faces = np.bincount(labels[surface.faces[:, 0]], minlength=count)
+    small = faces < max(SMALL_FACES, SMALL_SHARE * len(surface.faces))
+    suspects = np.flatnonzero(small[labels])
+    slopes = np.linalg.norm(gradient(network, surface.positions[suspects])[1], axis=1)
+    totals = np.bincount(labels[suspects], slopes, minlength=count)
+    slope = totals / np.maximum(np.bincount(labels[suspects], minlength=count), 1)
+    unconfirmed = small & ((slope < SLOPES[0]) | (slope > SLOPES[1]))
+    return (nearest > OUTSIDE) | unconfirmed, labels
 
 
 def without(surface: Surface, unwanted: NDArray[np.bool_], labels: Integers) -> Surface:

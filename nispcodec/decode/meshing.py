@@ -7,33 +7,36 @@ from numpy.typing import NDArray
 
 from nispcodec.asset import IndexArray, TexturedMesh
 from nispcodec.decode.charting import vertex_charts
-from nispcodec.decode.components import ExtractionReport, spurious, without
+from nispcodec.decode.components import ExtractionReport, without_noise
 from nispcodec.decode.evaluate import evaluate
 from nispcodec.decode.extract import LIMIT, Surface, extract
 from nispcodec.decode.seams import cut_along_seams
+from nispcodec.decode.simplify import simplified
 from nispcodec.document import Document
 
 DEFAULT_RESOLUTION = 256
 MAX_RESOLUTION = 2048
+FITTINGS = 4
 
 Floats = NDArray[np.float32]
 
 
 def textured_mesh(
-    document: Document, resolution: int | None = None, keep_spurious: bool = False
+    document: Document,
+    resolution: int | None = None,
+    faces: int | None = None,
+    keep_spurious: bool = False,
 ) -> tuple[TexturedMesh, ExtractionReport]:
-    """The document's surface in the world frame, textured, and a report on its extraction."""
+    """The document's surface in the world frame, textured, and a report on its extraction.
+
+    resolution: cells along the cube's edge, see `default_resolution`; faces: the most triangles
+    that the mesh may have, seams included; keep_spurious: do not drop noise of the field.
+    """
     resolution = resolution or default_resolution(document)
     surface = extract(document.sdf, resolution)
-    unwanted, labels = spurious(document.sdf, surface)
-    cleaned = surface if keep_spurious else without(surface, unwanted, labels)
-    report = ExtractionReport(
-        resolution=resolution,
-        kept=len(unwanted) - (0 if keep_spurious else int(unwanted.sum())),
-        dropped=0 if keep_spurious else int(unwanted.sum()),
-        dropped_faces=len(surface.faces) - len(cleaned.faces),
-    )
-    return _dressed(document, *_cut(document, cleaned)), report
+    cleaned, report = without_noise(document.sdf, surface, keep_spurious)
+    cut, charts = _cut(document, cleaned) if faces is None else _fitted(document, cleaned, faces)
+    return _dressed(document, cut, charts), report
 
 
 def default_resolution(document: Document) -> int:
@@ -61,6 +64,17 @@ def _cut(document: Document, surface: Surface) -> tuple[Surface, IndexArray]:
         return surface, np.zeros(len(surface.faces), np.int32)
     charts = vertex_charts(document.chart, surface)
     return cut_along_seams(document.sdf, document.chart, surface, charts)
+
+
+def _fitted(document: Document, surface: Surface, faces: int) -> tuple[Surface, IndexArray]:
+    """The surface simplified until it has at most `faces` triangles after being cut."""
+    target = faces
+    for _ in range(FITTINGS):
+        cut, charts = _cut(document, simplified(surface, target))
+        if len(cut.faces) <= faces:
+            break
+        target = int(0.99 * target * faces / len(cut.faces))
+    return cut, charts
 
 
 def _dressed(document: Document, surface: Surface, charts: IndexArray) -> TexturedMesh:

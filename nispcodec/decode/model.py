@@ -91,16 +91,22 @@ class NispModel:
             return self.document.frame.to_world(moved)
         return moved.astype(np.float64)
 
-    def to_mesh(self, resolution: int | None = None, keep_spurious: bool = False) -> TexturedMesh:
+    def to_mesh(
+        self,
+        resolution: int | None = None,
+        faces: int | None = None,
+        keep_spurious: bool = False,
+    ) -> TexturedMesh:
         """The surface as a textured mesh in the world frame.
 
         `resolution`: cells along the edge of the cube that is extracted; default 256, or more when
-        the asset has sheets thinner than that resolves. `keep_spurious` keeps the components that
-        are recognised as noise of the field.
+        the asset has sheets thinner than that resolves. `faces`: the most triangles to return; the
+        surface is simplified to fit. `keep_spurious` keeps the components that are recognised as
+        noise of the field.
         """
         from nispcodec.decode.meshing import textured_mesh
 
-        return textured_mesh(self.document, resolution, keep_spurious)[0]
+        return textured_mesh(self.document, resolution, faces, keep_spurious)[0]
 
     def _charts(self, normalised: Floats) -> Integers:
         from nispcodec.decode.charting import predicted_charts

@@ -12,7 +12,7 @@ from nispcodec.decode.model import NispModel
 from nispcodec.document import ChartTable, Frame
 from nispcodec.errors import QueryError
 from tests import tiny
-from tests.decode.surfaces import assert_sound
+from tests.decode.surfaces import assert_closed, assert_sound
 
 QUERIES = ("sdf", "normals", "charts", "uv", "color", "project")
 FRAME = Frame((1.0, 2.0, 3.0), 2.0)
@@ -157,6 +157,17 @@ def test_mesh_is_in_the_world_and_textured(model: NispModel) -> None:
     # Each UV once, each position once: nothing is doubled but at seams.
     seam = np.intersect1d(mesh.faces[left], mesh.faces[~left])
     assert len(mesh.uvs) == len(mesh.positions) + len(seam)
+
+
+def test_faces_bounds_the_mesh_and_keeps_its_seams(model: NispModel) -> None:
+    mesh = model.to_mesh(64, faces=600)
+    assert 300 < len(mesh.faces) <= 600
+    assert_closed(mesh.faces)
+    x = mesh.corners[:, :, 0] - FRAME.center[0]
+    assert (x[mesh.face_materials == 0] < 0.01).all()
+    assert (x[mesh.face_materials == 1] > -0.01).all()
+    assert np.abs(model.sdf(mesh.corners.mean(axis=1), "world")).max() < 0.05
+    assert len(model.to_mesh(16, faces=10**6).faces) == len(model.to_mesh(16).faces)
 
 
 def test_mesh_of_charts_without_uv() -> None:
