@@ -19,14 +19,14 @@ class Folder:
     def find(self, reference: str) -> Path | None:
         """The file meant by `reference`, or None.
 
-        Backslashes count as slashes and case does not matter. A path from another machine
-        (absolute, or relative to a folder that is not here) falls back to its last part, beside
-        the asset.
+        Backslashes count as slashes and case does not matter. A path from another machine falls
+        back to its last part, beside the asset.
         """
         parts = [part for part in re.split(r"[\\/]+", reference) if part not in ("", ".")]
         if not parts:
             return None
-        return _walk(self.path, parts) or _walk(self.path, parts[-1:])
+        start = Path("/") if Path(reference).is_absolute() else self.path
+        return _walk(start, parts) or _walk(self.path, parts[-1:])
 
     def read(self, path: Path) -> bytes:
         """The file's bytes; MeshError when it cannot be read."""

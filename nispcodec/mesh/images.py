@@ -6,6 +6,9 @@ import io
 import re
 import struct
 import warnings
+import zlib
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import PurePath
 
 import numpy as np
@@ -24,7 +27,18 @@ _KEPT = {
 }
 _CONVERTED = ("TGA", "BMP", "DIB", "TIFF", "GIF", "DDS", "JPEG2000", "PPM", "PCX", "SGI", "ICO")
 # What Pillow's readers raise for malformed files.
-_BROKEN = (OSError, ValueError, SyntaxError, EOFError, struct.error, ArithmeticError, LookupError)
+_BROKEN = (
+    OSError,
+    ValueError,
+    SyntaxError,
+    EOFError,
+    ArithmeticError,
+    LookupError,
+    RuntimeError,
+    TypeError,
+    struct.error,
+    zlib.error,
+)
 
 
 class TextureShelf:
@@ -51,7 +65,7 @@ class TextureShelf:
             mime, suffix = _KEPT[found]
             return Texture(self._free_name(stem, suffix), data, mime)
         self._warnings.append(f"{place}: a {found} image, converted to PNG")
-        return Texture(self._free_name(stem, ".png"), _as_png(image), "image/png")
+        return Texture(self._free_name(stem, ".png"), _as_png(image, place), "image/png")
 
     def _free_name(self, stem: str, suffix: str) -> str:
         taken = {texture.name.casefold() for texture in self.textures}
@@ -69,25 +83,33 @@ def _decoded(data: bytes, place: str) -> PIL.Image.Image:
     """Decode every pixel, so that a damaged image is found now and not by the viewer."""
     PIL.Image.init()  # else only the few common formats are registered
     formats = [name for name in (*_KEPT, *_CONVERTED) if name in PIL.Image.OPEN]
+    with _pillow(place):
+        PIL.Image.open(io.BytesIO(data), formats=formats).verify()
+        image = PIL.Image.open(io.BytesIO(data), formats=formats)
+        image.load()
+    return image
+
+
+def _as_png(image: PIL.Image.Image, place: str) -> bytes:
+    buffer = io.BytesIO()
+    mode = image.mode if image.mode in ("1", "L", "LA", "RGB", "RGBA", "P", "I;16") else "RGBA"
+    with _pillow(place):
+        image.convert(mode).save(buffer, "PNG")
+    return buffer.getvalue()
+
+
+@contextmanager
+def _pillow(place: str) -> Iterator[None]:
+    """Turn what Pillow raises, and its warning of decompression bombs, into MeshError."""
     try:
         with warnings.catch_warnings():
-            # Pillow's guard against decompression bombs only warns below twice its limit.
             warnings.simplefilter("ignore")
+            # Pillow only warns of images below twice its limit.
             warnings.simplefilter("error", PIL.Image.DecompressionBombWarning)
-            PIL.Image.open(io.BytesIO(data), formats=formats).verify()
-            image = PIL.Image.open(io.BytesIO(data), formats=formats)
-            image.load()
-            return image
+            yield
     except (*_BROKEN, PIL.Image.DecompressionBombWarning, PIL.Image.DecompressionBombError) as why:
         reason = str(why).split("<_io")[0]
         raise MeshError(f"{place}: expected an image that can be decoded, found: {reason}") from why
-
-
-def _as_png(image: PIL.Image.Image) -> bytes:
-    buffer = io.BytesIO()
-    mode = image.mode if image.mode in ("1", "L", "LA", "RGB", "RGBA", "P", "I;16") else "RGBA"
-    image.convert(mode).save(buffer, "PNG")
-    return buffer.getvalue()
 
 
 def _stem(name: str) -> str:

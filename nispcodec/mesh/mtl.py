@@ -82,7 +82,7 @@ def _values(line: bytes, place: str) -> list[float]:
     words = [word for word in line.split()[1:] if word != b"-halo"]
     if words and words[0] in (b"spectral", b"xyz"):
         return []
-    return wavefront.numbers(words, 1, lambda: place)
+    return wavefront.numbers(words, 1, place)
 
 
 def _map_statement(line: bytes, place: str) -> MapStatement:

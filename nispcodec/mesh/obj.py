@@ -89,12 +89,12 @@ class _Statements:
 
     def _position(self, line: bytes) -> None:
         words = line.split()
-        self.positions.extend(wavefront.numbers(words[1:], 3, self._place)[:3])
+        self.positions.extend(wavefront.numbers(words[1:], 3, self._place())[:3])
         if len(words) > 6:
             self._leave_out("vertex colours")
 
     def _uv(self, line: bytes) -> None:
-        values = wavefront.numbers(line.split()[1:], 1, self._place)
+        values = wavefront.numbers(line.split()[1:], 1, self._place())
         self.uvs.extend(values[:2] if len(values) > 1 else (values[0], 0.0))
 
     def _face(self, line: bytes) -> None:

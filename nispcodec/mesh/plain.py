@@ -37,7 +37,7 @@ def read_off(data: bytes, name: str, folder: Folder) -> TexturedMesh:
     lines = wavefront.logical_lines(data)
     vertices, faces = _off_counts(lines, name)
     rows = [
-        wavefront.numbers(line.split(), 3, lambda: f"{name}:{number}")[:3]  # noqa: B023
+        wavefront.numbers(line.split(), 3, f"{name}:{number}")[:3]
         for number, line in _take(lines, vertices, f"{name}: expected {vertices} vertices")
     ]
     sizes, corners = [], []
@@ -80,7 +80,7 @@ def _text_facets(data: bytes, name: str) -> tuple[FloatArray, NDArray[np.int64]]
     for number, line in wavefront.logical_lines(data):
         words = line.lower().split()
         if words[0] == b"vertex":
-            rows.append(wavefront.numbers(words[1:4], 3, lambda: f"{name}:{number}"))  # noqa: B023
+            rows.append(wavefront.numbers(words[1:4], 3, f"{name}:{number}"))
         elif words[0] == b"endloop" and (len(rows) % 3 or not rows):
             raise MeshError(f"{name}:{number}: expected three vertices in a loop, found other")
     if len(rows) % 3:

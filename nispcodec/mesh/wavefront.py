@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 
 from nispcodec.errors import MeshError
 
@@ -48,7 +48,7 @@ def rest(line: bytes, skipped: int = 1) -> str:
     return name[1:-1] if quoted else name
 
 
-def numbers(words: Sequence[bytes], least: int, place: Callable[[], str]) -> list[float]:
+def numbers(words: Sequence[bytes], least: int, place: str) -> list[float]:
     """The words as finite numbers, at least so many of them."""
     try:
         values = [float(word) for word in words]
@@ -56,5 +56,5 @@ def numbers(words: Sequence[bytes], least: int, place: Callable[[], str]) -> lis
         values = []
     if len(values) < least or not math.isfinite(sum(values)):
         found = text(b" ".join(words[:8])) or "nothing"
-        raise MeshError(f"{place()}: expected {least} or more finite numbers, found {found!r}")
+        raise MeshError(f"{place}: expected {least} or more finite numbers, found {found!r}")
     return values

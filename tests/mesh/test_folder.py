@@ -45,3 +45,8 @@ def test_an_exact_name_goes_before_another_case(folder: Folder):
     (folder.path / "WOOD.png").write_text("upper")
     assert folder.find("WOOD.png").read_text() == "upper"
     assert folder.find("wood.png").read_text() == "asset/wood.png"
+
+
+def test_an_absolute_path_that_is_here(folder: Folder):
+    other = (folder.path.parent / "other.png").resolve()
+    assert folder.find(str(other)) == other
