@@ -159,11 +159,18 @@ def _read_tag(reader: Reader) -> tuple[str, float | None]:
 
 
 def _scale(reader: Reader, key: str, values: NDArray[Any], step: float | None) -> Weights:
-    with np.errstate(over="ignore"):
-        scaled = values if step is None else values.astype(np.float32) * np.float32(step)
+    scaled = values if step is None else _multiplied(reader, key, values, step)
     if not np.isfinite(scaled).all():
         raise reader.error(key, "finite weights", "NaN or infinity")
     return np.ascontiguousarray(scaled)
+
+
+def _multiplied(reader: Reader, key: str, symbols: NDArray[Any], step: float) -> Weights:
+    largest = max(int(symbols.max()), -int(symbols.min()))
+    if largest > MAX_SYMBOL:
+        raise reader.error(key, f"symbols up to {MAX_SYMBOL}", largest)
+    with np.errstate(over="ignore"):
+        return symbols.astype(np.float32) * np.float32(step)
 
 
 def _matrix_shape(shape: tuple[int, ...]) -> tuple[int, int]:

@@ -285,6 +285,7 @@ def _relations() -> Iterator[Malformed]:
 
 def _tensors() -> Iterator[Malformed]:
     infinite = b"\x01\x02" + struct.pack("<6e", *[float("inf")] * 6)
+    large = b"\x81\0\0\0\x3f\x05" + struct.pack("<6i", *[-(2**31)] * 6)
     overflow = b"\x81" + struct.pack("<f", 3e38) + b"\x03" + b"\x7f" * 6
     cases = {
         "coding-reserved": (b"\0" + dense(6)[1:], "coding"),
@@ -300,7 +301,11 @@ def _tensors() -> Iterator[Malformed]:
     for name, (tensor, field) in cases.items():
         file = container(rows(None, nets(tensor)))
         yield Malformed(name, file, "NETS", f"sdf.weight.0.{field}")
-    for name, tensor in {"weights-infinite": infinite, "weights-overflow": overflow}.items():
+    for name, tensor in {
+        "weights-infinite": infinite,
+        "weights-overflow": overflow,
+        "symbol-large": large,
+    }.items():
         yield Malformed(name, container(rows(None, nets(tensor))), "NETS", "sdf.weight.0")
     yield Malformed("nets-cut", container(rows(None, nets()[:-1])), "NETS", "sdf.bias.1.values")
     yield Malformed("nets-extra", container(rows(None, nets(rest=b"\0"))), "NETS", "end")

@@ -1,0 +1,164 @@
+"""The specification says what the code does: its tables, its hexdumps, its decoder."""
+
+from __future__ import annotations
+
+import random
+from collections import defaultdict
+
+import numpy as np
+import pytest
+
+from nispcodec import asset, network
+from nispcodec.decode.evaluate import evaluate
+from nispcodec.format import constants, inspect, pack, unpack
+from nispcodec.format.codings import tables
+from nispcodec.format.container import content, read_container
+from nispcodec.format.record import Record
+from nispcodec.texture import sample_texture
+from tests.format import spec
+from tests.format.documents import full
+from tests.format.golden import slab
+from tests.tiny import random_network
+
+NAMES = vars(network) | vars(asset) | vars(constants)
+DECODER = spec.decoder()
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        *("PACKINGS", "NETWORKS", "CODINGS", "NUMBERS", "ENCODINGS", "CONDITIONINGS"),
+        *("ACTIVATIONS", "OUTPUTS", "ALPHA_MODES", "SLOTS", "WRAPS", "FILTERS", "MIME_TYPES"),
+    ],
+)
+def test_enumerations(name: str) -> None:
+    assert spec.enumeration(name) == NAMES[name]
+
+
+def test_caps() -> None:
+    caps = {row[0].strip("`"): int(row[1]) for row in spec.table_after("## 9 Caps")}
+    caps["MAX_MEMORY"] = constants.MAX_MEMORY
+    assert f"`MAX_MEMORY` = {constants.MAX_MEMORY} bytes" in spec.TEXT
+    assert caps == {name: value for name, value in NAMES.items() if name.startswith("MAX_")}
+
+
+def test_sections_and_bits() -> None:
+    rows = spec.table_after("Sections of this version")
+    assert tuple(row[0] for row in rows) == constants.KNOWN_SECTIONS
+    assert tuple(row[0] for row in rows if row[1] == "yes") == constants.CRITICAL_SECTIONS
+    assert f"(`SHORT_STEP`, {constants.SHORT_STEP:#x})" in spec.TEXT
+    assert f"(`QUANTISED`, {constants.QUANTISED:#x})" in spec.TEXT
+    assert "bit 0 (value 1): critical" in spec.TEXT
+    assert constants.CRITICAL == 1
+
+
+def test_header_and_table_layout() -> None:
+    header, entry = spec.table_after("Header:"), spec.table_after("Each row of the section table:")
+    for rows, size in ((header, constants.HEADER_SIZE), (entry, constants.ENTRY_SIZE)):
+        ends = [int(row[0]) + int(row[1]) for row in rows]
+        assert [int(row[0]) for row in rows] == [0, *ends[:-1]]
+        assert ends[-1] == size
+    signature = bytes.fromhex(header[0][4].strip("`"))
+    assert signature == constants.SIGNATURE
+    assert int(header[1][4]) == constants.MAJOR
+
+
+def test_levels() -> None:
+    assert DECODER["LEVELS"] == constants.LEVELS
+    row = next(line for line in spec.TEXT.splitlines() if line.startswith("| `LEVELS` |"))
+    assert tuple(map(int, row.strip("|").split("|")[1:])) == constants.LEVELS
+
+
+def test_fields_are_those_that_the_reader_asks_for(monkeypatch: pytest.MonkeyPatch) -> None:
+    asked = defaultdict(set)
+    take = Record.take
+
+    def noting(record, key, name, kind, default=None):  # type: ignore[no-untyped-def]
+        asked[record.path].add((key, name))
+        return take(record, key, name, kind, default)
+
+    monkeypatch.setattr(Record, "take", noting)
+    unpack(pack(full()))
+    assert asked["document"] == spec.fields("document")
+    assert asked["networks"] == spec.fields("networks")
+    for name in ("sdf", "chart", "uv"):
+        assert asked[f"networks.{name}"] == spec.fields("networks.sdf`, `networks.chart")
+    assert asked["materials.0"] == spec.fields("materials")
+    assert asked["materials.0.maps"] <= spec.fields("materials.maps")
+    assert asked["materials.0.maps.normal"] == spec.fields("materials.maps.slot")
+    assert asked["textures.0"] == spec.fields("textures")
+
+
+def test_worked_example() -> None:
+    assert pack(slab()) == spec.example()
+    annotated = "".join(row[0].strip("`") for row in spec.table_after(spec.blocks("hexdump")[0]))
+    assert bytes.fromhex(annotated) == spec.example()
+    assert unpack(spec.example()).materials == slab().materials
+
+
+def test_worked_example_of_the_entropy_coding() -> None:
+    data = pack(slab(), "entropy")
+    nets = next(entry for entry in read_container(data) if entry.code == "NETS")
+    shown = bytes.fromhex("".join(spec.blocks("entropy")[0].split()))
+    assert bytes(content(nets)) == shown
+    annotated = "".join(row[0].strip("`") for row in spec.table_after(spec.blocks("entropy")[0]))
+    assert bytes.fromhex(annotated) == shown
+    assert tables.frequencies([15, 10, 14]) == [2174, 385, 1537]
+
+
+def test_its_container_reader() -> None:
+    data = pack(full())
+    for row, section in zip(DECODER["read_table"](data), inspect(data), strict=True):
+        assert row[0] == section.code
+        assert row[1] == section.critical
+        assert row[2] == 1 + constants.PACKINGS.index(section.packing)
+        assert len(row[3]) == section.stored_length
+        assert row[4] == section.decoded_length
+
+
+@pytest.mark.parametrize("coding", [None, *constants.CODINGS])
+def test_its_weight_decoder(coding: str | None) -> None:
+    document = full()
+    data = pack(document, coding)
+    nets = next(entry for entry in read_container(data) if entry.code == "NETS")
+    reader = DECODER["Reader"](bytes(content(nets)))
+    for each in document.networks.values():
+        shapes = [(1, *shape)[-2:] for shape in each.spec.shapes.values()]
+        decoded = DECODER["read_network"](reader, shapes)
+        for values, tensor in zip(decoded, each.tensors.values(), strict=True):
+            np.testing.assert_array_equal(np.array(values, np.float32), tensor.ravel())
+    assert reader.at == len(reader.data)
+
+
+@pytest.mark.parametrize(
+    "options",
+    [
+        {},
+        {"encoding": "fourier", "levels": 3, "activation": "relu", "output": "tanh"},
+        {"conditioning": "scalar", "charts": 5, "output": "sigmoid", "w0": 4.0},
+        {"conditioning": "scalar", "charts": 5, "encoding": "fourier", "levels": 2},
+        {"conditioning": "embedding", "charts": 5, "embedding": 3},
+    ],
+    ids=["plain", "fourier", "scalar", "both", "embedding"],
+)
+def test_its_evaluator(options: dict[str, object]) -> None:
+    made = random_network(network.NetworkSpec((8, 7), 2, **options), scale=0.1)  # type: ignore[arg-type]
+    points = np.random.default_rng(0).uniform(-1, 1, (20, 3)).astype(np.float32)
+    charts = np.arange(20) % 5
+    expected = evaluate(made, points, charts if made.spec.charts else None)
+    tensors = [tensor.ravel().tolist() for tensor in made.tensors.values()]
+    for point, chart, wanted in zip(points.tolist(), charts.tolist(), expected, strict=True):
+        found = DECODER["evaluate"](vars(made.spec), 5, tensors, point, chart)
+        assert found == pytest.approx(wanted.tolist(), abs=1e-4)
+
+
+@pytest.mark.parametrize("filter", asset.FILTERS)
+@pytest.mark.parametrize("wrap", asset.WRAPS)
+def test_its_texture_lookup(wrap: str, filter: str) -> None:
+    image = np.random.default_rng(0).random((3, 4, 4)).astype(np.float32)
+    generator = random.Random(0)
+    uvs = [(generator.uniform(-3, 3), generator.uniform(-3, 3)) for _ in range(40)]
+    expected = sample_texture(image, np.array(uvs), (wrap, "repeat"), filter)
+    for (u, v), wanted in zip(uvs, expected, strict=True):
+        found = DECODER["look_up"](image.tolist(), u, v, wrap, "repeat", filter)
+        assert found == pytest.approx(wanted.tolist(), abs=1e-5)
