@@ -18,16 +18,9 @@ Charts = NDArray[np.int32]
 Pairs = NDArray[np.int64]
 
 
-def predicted_charts(network: Network | None, points: NDArray[np.float32]) -> Charts:
-    """The most likely chart at each point: (n, 3) float32, normalised frame -> (n,) int32."""
-    if network is None:
-        return np.zeros(len(points), np.int32)
-    return classify(network, points)
-
-
-def vertex_charts(network: Network | None, surface: Surface) -> Charts:
+def vertex_charts(network: Network, surface: Surface) -> Charts:
     """The chart of each vertex (n,), specks of wrong chart voted away."""
-    charts = predicted_charts(network, surface.positions)
+    charts = classify(network, surface.positions)
     edges = unique_edges(surface.faces)
     for _ in range(ROUNDS):
         charts = _without_specks(charts, edges)

@@ -6,9 +6,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from nispcodec.asset import IndexArray, TexturedMesh
+from nispcodec.decode.atlas import asset_uv
 from nispcodec.decode.charting import vertex_charts
 from nispcodec.decode.components import ExtractionReport, without_noise
-from nispcodec.decode.evaluate import evaluate
 from nispcodec.decode.extract import LIMIT, Surface, extract
 from nispcodec.decode.seams import cut_along_seams
 from nispcodec.decode.simplify import simplified
@@ -45,17 +45,6 @@ def default_resolution(document: Document) -> int:
         return DEFAULT_RESOLUTION
     wanted = int(np.ceil(2 * LIMIT / document.shell))
     return min(max(DEFAULT_RESOLUTION, wanted), MAX_RESOLUTION)
-
-
-def asset_uv(document: Document, points: Floats, charts: NDArray[np.integer]) -> Floats:
-    """UV of points (n, 3), normalised frame, on charts (n,) -> (n, 2); (0, 0) without UV."""
-    if document.uv is None:
-        return np.zeros((len(points), 2), np.float32)
-    table = document.charts
-    conditioned = document.uv.spec.conditioning != "none"
-    uvs = evaluate(document.uv, points, charts if conditioned else None)
-    placed = uvs * np.array(table.uv_scale, np.float32) + np.array(table.uv_offset, np.float32)
-    return np.where(table.has_uv[charts][:, None], placed, np.float32(0))
 
 
 def _cut(document: Document, surface: Surface) -> tuple[Surface, IndexArray]:

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from nispcodec.asset import TexturedMesh
-from nispcodec.decode.evaluate import evaluate, gradient
+from nispcodec.decode.evaluate import classify, evaluate, gradient
 from nispcodec.document import Document
 from nispcodec.errors import QueryError
 
@@ -109,12 +109,13 @@ class NispModel:
         return textured_mesh(self.document, resolution, faces, keep_spurious)[0]
 
     def _charts(self, normalised: Floats) -> Integers:
-        from nispcodec.decode.charting import predicted_charts
-
-        return predicted_charts(self.document.chart, normalised)
+        network = self.document.chart
+        if network is None:
+            return np.zeros(len(normalised), np.int32)
+        return classify(network, normalised)
 
     def _uv(self, normalised: Floats, charts: NDArray[np.integer]) -> Floats:
-        from nispcodec.decode.meshing import asset_uv
+        from nispcodec.decode.atlas import asset_uv
 
         return asset_uv(self.document, normalised, charts)
 

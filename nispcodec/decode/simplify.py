@@ -12,6 +12,7 @@ from nispcodec.decode.extract import Surface
 
 # How eagerly long edges collapse, 0 to 10: above 5 thin parts fold over, below 5 counts are missed.
 AGGRESSIVENESS = 5
+ROUGHNESS = 1e-3
 
 
 def simplified(surface: Surface, faces: int) -> Surface:
@@ -23,7 +24,8 @@ def simplified(surface: Surface, faces: int) -> Surface:
         return surface
     from fast_simplification import simplify  # type: ignore[import-untyped]
 
-    positions, corners = simplify(
-        surface.positions, surface.faces, target_count=faces, agg=AGGRESSIVENESS
-    )
+    # On exactly flat parts all quadrics are 0 and collapses get stuck: make them a little rough.
+    noise = np.random.default_rng(0).normal(0, ROUGHNESS * surface.cell, surface.positions.shape)
+    rough = surface.positions + noise.astype(np.float32)
+    positions, corners = simplify(rough, surface.faces, target_count=faces, agg=AGGRESSIVENESS)
     return Surface(positions.astype(np.float32), corners.astype(np.int32), surface.cell)

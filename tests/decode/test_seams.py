@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from nispcodec.decode.charting import predicted_charts, vertex_charts
-from nispcodec.decode.evaluate import evaluate
+from nispcodec.decode.charting import vertex_charts
+from nispcodec.decode.evaluate import classify, evaluate
 from nispcodec.decode.extract import Surface, extract
 from nispcodec.decode.seams import cut_along_seams
 from nispcodec.network import Network
@@ -35,7 +35,7 @@ def test_triangles_lie_in_one_chart(name: str, ball: Network, surface: Surface) 
     corners = cut.positions[cut.faces]
     # Just inside each corner the field must answer the face's chart.
     inner = 0.9 * corners + 0.1 * corners.mean(axis=1, keepdims=True)
-    agree = predicted_charts(chart, inner.reshape(-1, 3)).reshape(-1, 3) == charts[:, None]
+    agree = classify(chart, inner.reshape(-1, 3)).reshape(-1, 3) == charts[:, None]
     weight = areas(cut.positions, cut.faces)
     assert (weight[~agree.all(axis=1)]).sum() < 0.01 * weight.sum()
 
@@ -67,7 +67,7 @@ def test_specks_are_voted_away(surface: Surface) -> None:
     last = np.zeros((3, 8))
     last[0, 1], last[1, 0], last[2, 2:] = 1.0, 1.0, -50.0
     chart = tiny.relu_network([(first, bias), (last, np.array([0.0, 0.0, 1.0]))])
-    assert 0 < (predicted_charts(chart, surface.positions) == 2).sum() < 4
+    assert 0 < (classify(chart, surface.positions) == 2).sum() < 4
     assert not (vertex_charts(chart, surface) == 2).any()
 
 
