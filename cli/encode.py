@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from .files import output_option
-from .progress import encode_progress
+from .progress import duration, encode_progress
 from .report import print_group, print_json, rate
 
 if TYPE_CHECKING:
@@ -80,11 +80,12 @@ def _loaded(path: Path, unwrap: bool) -> TexturedMesh:
 def _report(
     model: NispModel, asset: TexturedMesh, source: Path, output: Path, seconds: float
 ) -> dict[str, Any]:
+    beside = () if source.suffix.lower() == ".glb" else asset.textures
     return {
         "bytes": rate(output.read_bytes()),
         "input_bytes": {
             "mesh": source.stat().st_size,
-            "textures": sum(len(texture.data) for texture in asset.textures),
+            "textures": sum(len(texture.data) for texture in beside),
         },
         "warnings": list(asset.warnings),
         "measured": dict(model.document.info),
@@ -93,8 +94,9 @@ def _report(
 
 
 def _print_report(output: Path, report: dict[str, Any]) -> None:
-    click.echo(str(output))
-    print_group("bytes", report["bytes"], "  ")
-    print_group("input bytes", report["input_bytes"], "  ")
+    parts, source = report["bytes"], report["input_bytes"]
+    click.echo(f"{output}: {parts['total']:,} bytes, from {sum(source.values()):,}")
+    print_group("bytes", parts, "  ")
+    print_group("input_bytes", source, "  ")
     print_group("measured", report["measured"], "  ")
-    click.echo(f"  encoded in {report['seconds']:.0f} s")
+    click.echo(f"  encoded in {duration(report['seconds'])}")

@@ -46,22 +46,21 @@ def describe(document: Document, data: bytes) -> dict[str, Any]:
         "charts": len(document.charts),
         "shell": document.shell,
         "networks": {name: _network(each) for name, each in document.networks.items()},
-        "materials": {
-            f"{index} {each.name}": _material(each) for index, each in enumerate(document.materials)
-        },
-        "textures": {
-            f"{index} {each.name}": f"{each.mime}, {len(each.data):,} bytes"
-            for index, each in enumerate(document.textures)
-        },
+        "materials": [_material(each) for each in document.materials],
+        "textures": [
+            {"name": each.name, "mime": each.mime, "bytes": len(each.data)}
+            for each in document.textures
+        ],
         "measured": dict(document.info),
     }
 
 
-def _sections(data: bytes) -> dict[str, Any]:
+def _sections(data: bytes) -> list[dict[str, Any]]:
     from nispcodec.format import inspect
 
-    return {
-        each.code: {
+    return [
+        {
+            "name": each.code,
             "packing": each.packing,
             "offset": each.offset,
             "stored": each.stored_length,
@@ -69,7 +68,7 @@ def _sections(data: bytes) -> dict[str, Any]:
             **({"parts": dict(each.parts)} if each.parts else {}),
         }
         for each in inspect(data)
-    }
+    ]
 
 
 def _network(network: Network) -> dict[str, Any]:
@@ -89,6 +88,7 @@ def _network(network: Network) -> dict[str, Any]:
 
 def _material(material: Material) -> dict[str, Any]:
     return {
+        "name": material.name,
         "base_color": list(material.base_color),
         "alpha_mode": material.alpha_mode,
         "maps": {slot: used.texture for slot, used in material.maps.items()},

@@ -24,18 +24,21 @@ def print_json(value: object) -> None:
 
 
 def print_group(title: str, values: Mapping[str, Any], indent: str = "") -> None:
-    """A titled list of names and values; maps inside become indented lists."""
+    """A titled list of names and values; maps, and lists of maps with a "name", are indented."""
     click.echo(f"{indent}{title}")
     for name, value in values.items():
         if isinstance(value, Mapping):
-            print_group(spelled(name), value, indent + "  ")
+            print_group(name, value, indent + "  ")
+        elif isinstance(value, list) and value and isinstance(value[0], Mapping):
+            click.echo(f"{indent}  {name}")
+            for each in value:
+                print_group(each["name"], _unnamed(each), indent + "    ")
         else:
-            click.echo(f"{indent}  {spelled(name):<22} {number(value)}")
+            click.echo(f"{indent}  {name:<22} {number(value)}")
 
 
-def spelled(name: str) -> str:
-    """A key as words."""
-    return name.replace("_", " ")
+def _unnamed(values: Mapping[str, Any]) -> dict[str, Any]:
+    return {name: value for name, value in values.items() if name != "name"}
 
 
 def number(value: Any) -> str:

@@ -60,7 +60,7 @@ def test_encode_report_for_people(encoder, mesh: Path, tmp_path: Path) -> None:
     encoder(tiny.document())
     result = nisp("encode", mesh, "-o", tmp_path / "out.nisp")
     assert result.exit_code == 0, result.output
-    assert "geometry uv" in result.stdout
+    assert "geometry_uv" in result.stdout
 
 
 def test_quiet_is_quiet(encoder, mesh: Path, tmp_path: Path) -> None:
