@@ -188,11 +188,11 @@ def _encodings() -> Iterator[Malformed]:
     for name, (data, field) in cases.items():
         yield Malformed(name, container(rows(data)), "META", field)
     crowd = msgpack.packb({1: [[1] * 4095 for _ in range(5)]})
-    yield Malformed("msgpack-crowd", container(rows(crowd)), "META", "values")
-    long = squeezed(bytes(2**19 + 1))
-    claim = {"payload": long, "packing": 2, "decoded": 2**19 + 1}
-    file = container(change(rows(), b"META", **claim))
-    yield Malformed("msgpack-too-long", file, "META", "length")
+    long = bytes(2**19 + 1)
+    for name, data, field in (("crowd", crowd, "values"), ("too-long", long, "length")):
+        claim = {"payload": squeezed(data), "packing": 2, "decoded": len(data)}
+        file = container(change(rows(), b"META", **claim))
+        yield Malformed(f"msgpack-{name}", file, "META", field)
 
 
 def _fields() -> Iterator[Malformed]:

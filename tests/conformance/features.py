@@ -1,0 +1,217 @@
+"""The documents of the conformance files: one for each coding and each feature."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Iterator
+from io import BytesIO
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from PIL import Image
+
+from nispcodec.asset import SLOTS, WRAPS, Material, Texture, TextureMap
+from nispcodec.document import ChartTable, Document, Frame
+from nispcodec.format import pack
+from nispcodec.network import Network, NetworkSpec
+
+
+def network(hidden: tuple[int, ...], outputs: int, seed: int, **options: Any) -> Network:
+    """Weights as a sine network has them after training: small but in the first layer."""
+    spec = NetworkSpec(hidden, outputs, **options)
+    generator = np.random.default_rng(seed)
+    tensors = {}
+    for name, shape in spec.shapes.items():
+        spread = 1.0 if spec.activation == "relu" or name.endswith(".0") else spec.w0
+        limit = np.sqrt(6 / shape[-1]) / spread if name.startswith("weight") else 0.3
+        tensors[name] = generator.uniform(-limit, limit, shape).astype(np.float32)
+    last = f"weight.{len(hidden)}"
+    tensors[last] = tensors[last] * np.float32(spec.w0 if spec.activation == "sine" else 1)
+    return Network(spec, tensors)
+
+
+def rounded(source: Network) -> Network:
+    """Weights that are float16."""
+    tensors = {k: v.astype(np.float16).astype(np.float32) for k, v in source.tensors.items()}
+    return Network(source.spec, tensors)
+
+
+def pruned(source: Network) -> Network:
+    """Two thirds of the weights zero, one whole row and one whole column of each matrix."""
+    generator = np.random.default_rng(1)
+    tensors = {}
+    for name, tensor in source.tensors.items():
+        kept = generator.random(tensor.shape) < 1 / 3
+        if tensor.ndim == 2 and min(tensor.shape) > 1:
+            kept[0], kept[:, -1] = False, False
+        tensors[name] = tensor * kept
+    return Network(source.spec, tensors)
+
+
+def quantised(source: Network, step: float) -> Network:
+    """Multiples of one step for weights and a finer one for biases."""
+    steps = {name: step if "weight" in name else step / 8 for name in source.tensors}
+    tensors = {
+        name: np.rint(tensor / steps[name]).astype(np.float32) * np.float32(steps[name])
+        for name, tensor in source.tensors.items()
+    }
+    return Network(source.spec, tensors, steps)
+
+
+def pixels(width: int, height: int, seed: int = 0) -> NDArray[np.uint8]:
+    """A colourful RGBA image."""
+    return np.random.default_rng(seed).integers(0, 256, (height, width, 4), dtype=np.uint8)
+
+
+def texture(name: str, mime: str, image: NDArray[np.uint8], **options: Any) -> Texture:
+    """The image as a file of this type."""
+    buffer = BytesIO()
+    Image.fromarray(image).save(buffer, mime.removeprefix("image/"), **options)
+    return Texture(name, buffer.getvalue(), mime)
+
+
+def plain() -> Document:
+    """One chart without UV, one material, an SDF network."""
+    return Document(
+        frame=Frame((0.0, 0.0, 0.0), 1.0),
+        charts=ChartTable(np.zeros(1, np.int32), np.zeros(1, np.bool_)),
+        materials=(Material(base_color=(0.5, 0.25, 0.125, 1.0)),),
+        textures=(),
+        sdf=network((12, 11), 1, 0),
+    )
+
+
+def textured(used: TextureMap | None = None, image: Texture | None = None) -> Document:
+    """Two charts with UV, one material with a base colour map."""
+    material = Material("painted", maps={"base_color": used or TextureMap(0)})
+    return dataclasses.replace(
+        plain(),
+        charts=ChartTable(np.zeros(2, np.int32), np.ones(2, np.bool_)),
+        materials=(material,),
+        textures=(image or texture("paint.png", "image/png", pixels(5, 4)),),
+        chart=network((8,), 2, 1),
+        uv=network((8, 8), 2, 2, conditioning="embedding", charts=2, embedding=3),
+    )
+
+
+def features() -> Iterator[tuple[str, bytes]]:
+    """Name and bytes of every conformance file."""
+    yield from _codings()
+    yield from _topologies()
+    yield from _tables()
+    yield from _materials()
+    yield from _containers()
+
+
+def _codings() -> Iterator[tuple[str, bytes]]:
+    kinds = {
+        "float32": plain().sdf,
+        "float16": rounded(plain().sdf),
+        "pruned": pruned(plain().sdf),
+        "symbols": quantised(plain().sdf, 0.01),
+        "pruned-symbols": quantised(pruned(plain().sdf), 0.0078125),
+        "wide-symbols": quantised(plain().sdf, 1e-6),
+    }
+    for kind, sdf in kinds.items():
+        for coding in (
+            ("dense", "entropy")
+            if "pruned" not in kind
+            else ("coo", "csc", "csr", "dia", "entropy")
+        ):
+            document = dataclasses.replace(plain(), sdf=sdf)
+            yield f"coding-{coding}-{kind}", pack(document, coding)
+    empty = Network(plain().sdf.spec, {k: v * 0 for k, v in plain().sdf.tensors.items()})
+    for coding in ("coo", "csr", "dia", "entropy"):
+        yield f"coding-{coding}-empty", pack(dataclasses.replace(plain(), sdf=empty), coding)
+
+
+def _topologies() -> Iterator[tuple[str, bytes]]:
+    fourier = {"encoding": "fourier", "levels": 5, "activation": "relu"}
+    sdfs = {
+        "paper": network((16, 16), 1, 3, output="tanh", **fourier),
+        "relu": network((16,), 1, 4, activation="relu"),
+        "w0": network((16, 8), 1, 5, w0=12.5),
+        "sigmoid": network((16,), 1, 6, output="sigmoid"),
+        "deep": network((6,) * 8, 1, 7),
+    }
+    for name, sdf in sdfs.items():
+        yield f"topology-{name}", pack(dataclasses.replace(plain(), sdf=sdf))
+    uvs: dict[str, dict[str, Any]] = {
+        "none": {},
+        "scalar": {"conditioning": "scalar", "charts": 2},
+        "scalar-fourier": {"conditioning": "scalar", "charts": 2, **fourier, "output": "sigmoid"},
+        "embedding": {"conditioning": "embedding", "charts": 2, "embedding": 4},
+    }
+    for name, options in uvs.items():
+        document = dataclasses.replace(textured(), uv=network((10, 9), 2, 8, **options))
+        yield f"conditioning-{name}", pack(document)
+
+
+def _tables() -> Iterator[tuple[str, bytes]]:
+    base = textured()
+    frame = Frame((1e6 + 1 / 3, -2000.125, 0.1), 1234.5678)
+    yield "frame-far-away", pack(dataclasses.replace(base, frame=frame))
+    table = dataclasses.replace(base.charts, uv_offset=(-1.5, 0.1), uv_scale=(3.0, 0.7))
+    yield "uv-map", pack(dataclasses.replace(base, charts=table))
+    table = ChartTable(np.array([0, 1, 0, 1, 1], np.int32), np.array([1, 0, 1, 1, 0], np.bool_))
+    uv = network((8,), 2, 9, conditioning="scalar", charts=5)
+    materials = (base.materials[0], Material("glass", (0.1, 0.5, 0.9, 0.25), alpha_mode="blend"))
+    five = dataclasses.replace(
+        base, charts=table, materials=materials, chart=network((9,), 5, 10), uv=uv
+    )
+    yield "charts-five", pack(five)
+    kinds = tuple(Material(f"m{i}", (i / 256, 1 - i / 256, 0.5, 1.0)) for i in range(257))
+    many = ChartTable(np.arange(257, dtype=np.int32)[::-1].copy(), np.zeros(257, np.bool_))
+    wide = rounded(network((4,), 257, 11))
+    yield (
+        "charts-many",
+        pack(dataclasses.replace(plain(), charts=many, materials=kinds, chart=wide)),
+    )
+    tie = {name: tensor[[0, 0]] if name in ("weight.1", "bias.1") else tensor
+           for name, tensor in base.chart.tensors.items()}  # fmt: skip
+    yield "charts-tie", pack(dataclasses.replace(base, chart=Network(base.chart.spec, tie)))
+    yield "shell", pack(dataclasses.replace(plain(), shell=0.015625))
+
+
+def _materials() -> Iterator[tuple[str, bytes]]:
+    stretched = ChartTable(np.zeros(2, np.int32), np.ones(2, np.bool_), (-3.0, -3.0), (7.0, 7.0))
+    for u, v in zip(WRAPS, WRAPS[1:] + WRAPS[:1], strict=True):
+        document = textured(TextureMap(0, (u, v)))
+        yield f"wrap-{u}-{v}", pack(dataclasses.replace(document, charts=stretched))
+    yield "filter-nearest", pack(textured(TextureMap(0, filter="nearest")))
+    opaque = pixels(8, 8)[..., :3]
+    yield "image-jpeg", pack(textured(image=texture("a.jpg", "image/jpeg", opaque, quality=90)))
+    webp = texture("a.webp", "image/webp", pixels(8, 8), lossless=True)
+    yield "image-webp", pack(textured(image=webp))
+    grey = texture("grey.png", "image/png", pixels(6, 3)[..., 0])
+    yield "image-grey", pack(textured(image=grey))
+    tinted = Material("tinted", (0.8, 0.5, 0.2, 0.5), maps={"base_color": TextureMap(0)})
+    yield "factor", pack(dataclasses.replace(textured(), materials=(tinted,)))
+    maps = {
+        slot: TextureMap(i % 2, ("clamp", "mirror"), "nearest", 0.5) for i, slot in enumerate(SLOTS)
+    }
+    rich = Material(
+        "rich – ünïcödé",
+        (1.0, 1.0, 1.0, 1.0),
+        0.75,
+        0.25,
+        (0.5, 0.25, 2.0),
+        "mask",
+        0.125,
+        True,
+        maps,
+    )
+    images = (textured().textures[0], texture("other one.png", "image/png", pixels(2, 2)))
+    yield "material-full", pack(dataclasses.replace(textured(), materials=(rich,), textures=images))
+
+
+def _containers() -> Iterator[tuple[str, bytes]]:
+    info: dict[str, str | int | float | bool] = {
+        "tool": "conformance", "seed": -1, "large": 2**64 - 1, "error": 4e-4, "ok": True
+    }  # fmt: skip
+    yield "info", pack(dataclasses.replace(plain(), info=info))
+    extra = {"AAAA": b"", "ZZ99": b"kept, whatever it is " * 20}
+    yield "unknown-ancillary", pack(dataclasses.replace(plain(), extra=extra))
+    bmp_like = dataclasses.replace(textured().textures[0], data=textured().textures[0].data)
+    yield "textures-two-alike", pack(dataclasses.replace(textured(), textures=(bmp_like, bmp_like)))

@@ -1,0 +1,96 @@
+"""Writes the conformance files: `python -m tests.conformance.regenerate [--replace]`.
+
+Without `--replace` it only adds what is missing: the committed bytes must decode for ever.
+"""
+
+from __future__ import annotations
+
+import json
+import sys
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from nispcodec.decode.evaluate import evaluate
+from nispcodec.decode.model import NispModel
+from nispcodec.document import Frame
+from nispcodec.format import unpack
+from nispcodec.texture import decode_image
+from tests.conformance.features import features
+from tests.conformance.malformed import all_malformed
+
+HERE = Path(__file__).parent
+TOLERANCE = {"sdf": 1e-4, "uv": 1e-4, "color": 0.01, "logit_margin": 1e-3}
+POINTS = 8
+DIGITS = 8
+
+
+def answers(data: bytes) -> dict[str, Any]:
+    """What the reference says about a file, at points where no rounding can turn the answer."""
+    document = unpack(data)
+    model = NispModel(document)
+    points = np.random.default_rng(7).uniform(-0.8, 0.8, (400, 3)).round(3).astype(np.float32)
+    points = points[_steady(model, points)][:POINTS]
+    found = {
+        "points": points,
+        "sdf": model.sdf(points, "normalised"),
+        "chart": model.charts(points, "normalised"),
+        "uv": model.uv(points, "normalised"),
+        "color": model.color(points, "normalised"),
+    }
+    if document.frame != Frame((0.0, 0.0, 0.0), 1.0):
+        world = document.frame.to_world(points)
+        found |= {"world_points": world, "world_sdf": model.sdf(world)}
+    return {name: value.tolist() for name, value in found.items()}
+
+
+def _steady(model: NispModel, points: NDArray[np.float32]) -> NDArray[np.bool_]:
+    """(n,) bool: clear of borders of charts (or right on one, in a tie) and of texels."""
+    steady = np.ones(len(points), np.bool_)
+    if model.document.chart is not None:
+        logits = np.sort(evaluate(model.document.chart, points), axis=1)
+        margin = logits[:, -1] - logits[:, -2]
+        steady &= (margin > 0.01) | (margin == 0)
+    for texture in model.document.textures:
+        size = decode_image(texture).shape[1::-1]
+        inside = model.uv(points, "normalised") * np.array(size) % 1
+        steady &= (np.abs(inside - 0.5) < 0.48).all(axis=1)
+    return steady
+
+
+def main(replace: bool) -> None:
+    """Write all files."""
+    for name, data in features():
+        path = HERE / f"{name}.nisp"
+        if replace or not path.exists():
+            path.write_bytes(data)
+            path.with_suffix(".json").write_text(_compact(answers(data)))
+    (HERE / "tolerance.json").write_text(json.dumps(TOLERANCE, indent=1) + "\n")
+    folder = HERE / "malformed"
+    folder.mkdir(exist_ok=True)
+    expected = {}
+    for case in all_malformed():
+        expected[case.name] = {"section": case.section, "field": case.field}
+        path = folder / f"{case.name}.nisp"
+        if replace or not path.exists():
+            path.write_bytes(case.data)
+    (folder / "expected.json").write_text(json.dumps(expected, indent=1, sort_keys=True) + "\n")
+
+
+def _compact(answer: dict[str, Any]) -> str:
+    """One line for each kind of answer, floats but of the world to `DIGITS` digits."""
+    short = {k: v if k == "world_points" else _short(v) for k, v in answer.items()}
+    rows = [f'"{name}": {json.dumps(value)}' for name, value in short.items()]
+    return "{\n" + ",\n".join(rows) + "\n}\n"
+
+
+def _short(value: Any) -> Any:
+    if isinstance(value, list):
+        return [_short(item) for item in value]
+    return value if isinstance(value, int) else float(f"{value:.{DIGITS}g}")
+
+
+if __name__ == "__main__":
+    main("--replace" in sys.argv[1:])
