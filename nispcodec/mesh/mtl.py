@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
@@ -68,7 +69,7 @@ def parse_mtl(data: bytes, name: str) -> dict[str, MtlMaterial]:
             current = MtlMaterial(wavefront.rest(line))
             materials[current.name] = current
         elif keyword in _VALUES:
-            current.values[keyword] = _values(line, place)
+            current.values |= _values(keyword, line, place)
         elif keyword in SLOT_OF or keyword.startswith("map_") or keyword in _OTHER_MAPS:
             current.maps[keyword] = _map_statement(line, place)
     return materials
@@ -78,11 +79,11 @@ _VALUES = ("kd", "ke", "d", "tr", "pr", "pm")
 _OTHER_MAPS = ("disp", "decal", "refl")
 
 
-def _values(line: bytes, place: str) -> list[float]:
+def _values(keyword: str, line: bytes, place: str) -> dict[str, list[float]]:
     words = [word for word in line.split()[1:] if word != b"-halo"]
     if words and words[0] in (b"spectral", b"xyz"):
-        return []
-    return wavefront.numbers(words, 1, place)
+        return {}
+    return {keyword: wavefront.numbers(words, 1, place)}
 
 
 def _map_statement(line: bytes, place: str) -> MapStatement:
@@ -102,10 +103,9 @@ def _map_statement(line: bytes, place: str) -> MapStatement:
 
 def _is_number(word: str) -> bool:
     try:
-        float(word)
+        return math.isfinite(float(word))
     except ValueError:
         return False
-    return True
 
 
 class MaterialReader:
@@ -148,6 +148,9 @@ class MaterialReader:
 
     def _finished(self, found: MtlMaterial) -> Material:
         alpha = _alpha(found.values)
+        if alpha == 0:
+            self._warnings.append(f"material {found.name!r}: invisible, taken as opaque")
+            alpha = 1.0
         maps = self._maps(found)
         red, green, blue = _color(found.values.get("kd"), (1.0, 1.0, 1.0))
         if "base_color" in maps and (red, green, blue) == (0.0, 0.0, 0.0):
@@ -169,42 +172,41 @@ class MaterialReader:
 
     def _maps(self, found: MtlMaterial) -> dict[str, TextureMap]:
         maps: dict[str, TextureMap] = {}
-        ordered = [key for key in SLOT_OF if key in found.maps]
-        for keyword in ordered:
-            slot = SLOT_OF[keyword]
-            made = None if slot in maps else self._map(keyword, found.maps[keyword])
+        taken: dict[str, str] = {}
+        for keyword, slot in SLOT_OF.items():
+            statement = found.maps.get(keyword)
+            if statement is None or statement.reference == taken.get(slot):
+                continue
+            if slot in maps:
+                self._warn(statement, f"{keyword} gives way to {taken[slot]!r}")
+                continue
+            made = self._map(keyword, statement)
             if made is not None:
-                maps[slot] = made
+                maps[slot], taken[slot] = made, statement.reference
         self._warn_of_others(found)
         return maps
 
     def _map(self, keyword: str, statement: MapStatement) -> TextureMap | None:
         path = self._folder.find(statement.reference)
         if path is None:
-            self._warnings.append(f"{statement.place}: image {statement.reference!r} not found")
+            self._warn(statement, "image not found")
             return None
         data = self._folder.read(path)
         if "bump" in keyword and is_grey(data, str(path)):
-            self._warnings.append(
-                f"{statement.place}: {statement.reference!r} is a grey height map, "
-                "not a normal map: left out"
-            )
+            self._warn(statement, "a grey height map, not a normal map: left out")
             return None
         self._warn_of_options(statement)
         texture = self._shelf.add(path.name, data, str(path))
-        clamped = statement.options.get("-clamp", [""])[0].lower() == "on"
-        wrap = "clamp" if clamped else "repeat"
+        clamp = [value.lower() for value in statement.options.get("-clamp", [])]
+        wrap = "clamp" if clamp == ["on"] else "repeat"
         return TextureMap(texture, (wrap, wrap), strength=_strength(statement))
 
     def _warn_of_options(self, statement: MapStatement) -> None:
-        for option in statement.options:
-            if option in _MOVING:
-                effect = "texture coordinates are kept as they are"
+        for option, values in statement.options.items():
+            if option in _MOVING and not _stays(option, values):
+                self._warn(statement, f"{option} is not applied: texture coordinates stay")
             elif option in _CHANGING:
-                effect = "the image is kept as it is"
-            else:
-                continue
-            self._warnings.append(f"{statement.place}: option {option} is not applied: {effect}")
+                self._warn(statement, f"{option} is not applied: the image stays")
 
     def _warn_of_others(self, found: MtlMaterial) -> None:
         base = found.maps["map_kd"].reference if "map_kd" in found.maps else None
@@ -212,9 +214,16 @@ class MaterialReader:
             # Exporters often repeat the base colour as the ambient one.
             repeated = keyword == "map_ka" and statement.reference == base
             if keyword not in SLOT_OF and not repeated:
-                self._warnings.append(
-                    f"{statement.place}: {keyword} {statement.reference!r} is not supported"
-                )
+                self._warn(statement, f"{keyword} is not supported")
+
+    def _warn(self, statement: MapStatement, what: str) -> None:
+        self._warnings.append(f"{statement.place}: {statement.reference!r}: {what}")
+
+
+def _stays(option: str, values: Sequence[str]) -> bool:
+    """Whether an option moves UVs by nothing; some exporters always write it."""
+    neutral = 1.0 if option == "-s" else 0.0
+    return all(_is_number(value) and float(value) == neutral for value in values)
 
 
 def _alpha(values: dict[str, list[float]]) -> float:

@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+from functools import partial
 from pathlib import Path
 
 import pytest
@@ -36,6 +37,12 @@ def test_alpha(tmp_path: Path, line: str, alpha: float):
     assert material(tmp_path, line).base_color[3] == alpha
 
 
+def test_an_invisible_material_is_a_mistake(tmp_path: Path):
+    mesh = load(tmp_path, "d 0\n")
+    assert mesh.materials[0].base_color[3] == 1.0
+    assert mesh.warnings == ("material 'm': invisible, taken as opaque",)
+
+
 def test_one_number_is_a_grey(tmp_path: Path):
     assert material(tmp_path, "Kd .5\n").base_color[:3] == (0.5, 0.5, 0.5)
 
@@ -63,13 +70,14 @@ def test_every_name_of_a_normal_map(tmp_path: Path, keyword: str):
 def test_norm_goes_before_bump(tmp_path: Path):
     mesh = load(tmp_path, "bump b.png\nnorm n.png\n", n_png=image(), b_png=image(color=(0, 0, 9)))
     assert [texture.name for texture in mesh.textures] == ["n.png"]
+    assert mesh.warnings == ("a.mtl:2: 'b.png': bump gives way to 'n.png'",)
 
 
 def test_a_grey_bump_is_no_normal_map(tmp_path: Path):
     mesh = load(tmp_path, "map_Bump b.png\n", b_png=image(color=(90, 90, 90)))
     assert mesh.materials[0].maps == {}
     assert mesh.textures == ()
-    assert mesh.warnings == ("a.mtl:2: 'b.png' is a grey height map, not a normal map: left out",)
+    assert mesh.warnings == ("a.mtl:2: 'b.png': a grey height map, not a normal map: left out",)
 
 
 def test_emissive_map_without_factor_shines(tmp_path: Path):
@@ -87,7 +95,12 @@ def test_clamp_sets_the_wrap(tmp_path: Path):
 def test_options_that_move_uvs_give_a_warning(tmp_path: Path, option: str):
     mesh = load(tmp_path, f"map_Kd {option} w.png\n", w_png=image())
     assert "base_color" in mesh.materials[0].maps
-    assert mesh.warnings[0].startswith(f"a.mtl:2: option {option[:2]} is not applied")
+    assert mesh.warnings[0].startswith(f"a.mtl:2: 'w.png': {option[:2]} is not applied")
+
+
+@pytest.mark.parametrize("option", ["-s 1 1 1", "-o 0", "-t 0.0 0 0", "-blendu on -texres 512"])
+def test_options_without_effect_are_no_loss(tmp_path: Path, option: str):
+    assert load(tmp_path, f"map_Kd {option} w.png\n", w_png=image()).warnings == ()
 
 
 @pytest.mark.parametrize(
@@ -144,7 +157,7 @@ def test_materials_nobody_uses_are_not_read(tmp_path: Path):
 
 def test_missing_files_are_named_and_the_rest_goes_on(tmp_path: Path):
     mesh = load(tmp_path, "Kd 1 0 0\nmap_Kd gone.png\n")
-    assert mesh.warnings == ("a.mtl:3: image 'gone.png' not found",)
+    assert mesh.warnings == ("a.mtl:3: 'gone.png': image not found",)
     assert mesh.materials[0].base_color == (1.0, 0.0, 0.0, 1.0)
     mesh = load_obj(tmp_path, OBJ.replace("a.mtl", "gone.mtl"))
     assert mesh.warnings == ("a.obj:1: material file 'gone.mtl' not found",)
@@ -176,6 +189,16 @@ def test_a_library_name_with_spaces(tmp_path: Path, written: str):
 def test_malformed_values_name_the_line(tmp_path: Path, line: str):
     with pytest.raises(MeshError, match=r"a\.mtl:2: expected"):
         load(tmp_path, line + "\n", w_png=image())
+
+
+WORDS = ["newmtl", "m", "Kd", "d", "Ke", "1", "0", "nan", "spectral", "-halo", "norm", "map_Kd"]
+WORDS += ["bump", "-bm", "-s", "-clamp", "on", "w.png", "gone.png", "#", "map_d", "\\", "Tr", "\n"]
+
+
+@given(st.lists(st.sampled_from(WORDS), max_size=15).map(" ".join))
+def test_any_words_give_a_material_or_a_mesh_error(tmp_path_factory, mtl: str):
+    found = outcome(partial(load, w_png=image()), tmp_path_factory.getbasetemp(), mtl)
+    assert isinstance(found, TexturedMesh | MeshError)
 
 
 @given(
