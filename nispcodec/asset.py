@@ -113,8 +113,7 @@ class TexturedMesh:
     @property
     def has_uv(self) -> NDArray[np.bool_]:
         """(m,) bool: which faces carry UVs."""
-        mask: NDArray[np.bool_] = (self.uv_faces >= 0).all(axis=1)
-        return mask
+        return np.asarray((self.uv_faces >= 0).all(axis=1))
 
 
 def _expect(

@@ -68,14 +68,16 @@ def encode(
     config = config or EncodeConfig()
     materials, textures = _appearance(mesh, config)
     sampler, sets = _sample(mesh, config, progress)
-    networks = {name: to_half(network) for name, network in _fit(sampler, sets, config, progress)}
+    networks = _fit(sampler, sets, config, progress)
     document = Document(
         frame=sampler.frame,
         charts=sampler.table,
         materials=materials,
         textures=textures,
+        sdf=networks["sdf"],
+        chart=networks.get("chart"),
+        uv=networks.get("uv"),
         shell=_shell(sampler),
-        **networks,
     )
     return NispModel(replace(document, info=_measured(document, sampler, sets, config)))
 
@@ -109,7 +111,7 @@ def _sample(
 
 def _fit(
     sampler: Sampler, sets: TrainingSets, config: EncodeConfig, progress: Listener
-) -> list[tuple[str, Network]]:
+) -> dict[str, Network]:
     progress(Progress(stage="fit"))
     from nispcodec.fit.parallel import fit_networks, resolve_device
     from nispcodec.fit.presets import tasks_for
@@ -117,7 +119,8 @@ def _fit(
     tasks = tasks_for(config.preset, sampler.table, sets)
     threads = config.threads or os.cpu_count() or 1
     device = resolve_device(config.device)
-    return list(fit_networks(tasks, config.seed, device, threads, progress).items())
+    fitted = fit_networks(tasks, config.seed, device, threads, progress)
+    return {name: to_half(network) for name, network in fitted.items()}
 
 
 def _shell(sampler: Sampler) -> float:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -80,11 +81,12 @@ def _neighbours(
     return neighbours
 
 
-def row_ids(rows: NDArray[np.generic]) -> NDArray[np.int64]:
+def row_ids(rows: NDArray[np.number[Any]]) -> NDArray[np.int64]:
     """(n, c) -> (n,): equal rows get equal numbers."""
     if not len(rows):
         return np.zeros(0, dtype=np.int64)
-    return np.unique(rows, axis=0, return_inverse=True)[1].reshape(-1)
+    # Adding zero makes -0.0 the same as 0.0, which np.unique tells apart.
+    return np.unique(rows + rows.dtype.type(0), axis=0, return_inverse=True)[1].reshape(-1)
 
 
 def _uv_ids(mesh: TexturedMesh) -> NDArray[np.int64]:

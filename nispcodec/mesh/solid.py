@@ -24,6 +24,7 @@ SHELL = 4e-3
 
 COARSE_EDGE = 0.1
 FINE_EDGE = 0.02
+DOUBT = 0.05
 OPENNESS = 0.25
 GAP = 5e-3
 
@@ -126,13 +127,15 @@ def _kind(bodies: Triangles, pieces: Triangles, single: NDArray[np.bool_]) -> ND
 
 
 def _point_kind(bodies: Triangles, pieces: Triangles, weights: FloatArray) -> NDArray[np.int64]:
-    """Across a face the winding number falls by exactly one, so one look in front is enough."""
+    """Across a face the winding number falls by one, so one look in front is enough.
+
+    Not quite by one across a card, whose rim shows: hence the doubtful band.
+    """
     points = np.einsum("c,ncx->nx", weights, pieces) + OFFSET * normals(pieces)
     front = winding_number(bodies, points)
-    front_inside, back_inside = np.abs(front) > 0.5, np.abs(front + 1) > 0.5
-    return np.select(
-        [front_inside & back_inside, ~front_inside & ~back_inside], [_HIDDEN, _SHEET], _OUTER
-    )
+    doubtful = np.abs(front + 0.5) < DOUBT
+    inside = (np.abs(front) > 0.5) & (np.abs(front + 1) > 0.5)
+    return np.select([doubtful, inside], [_SHEET, _HIDDEN], _OUTER)
 
 
 def _open_bodies(corners: Triangles) -> NDArray[np.bool_]:

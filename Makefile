@@ -1,0 +1,36 @@
+# make demo: set up, encode a sample asset, decode it, show sizes and errors
+# make test: set up, then everything that CI runs
+# make bench: the numbers of benchmarks/, on the assets in ASSETS
+
+PYTHON ?= python3
+ASSETS ?= ../shared/assets
+BIN := .venv/bin
+
+.PHONY: setup demo test lint bench
+
+setup: .venv/ready
+
+# torch first and exact: an open range can pull gigabytes of CUDA.
+.venv/ready: pyproject.toml constraints.txt
+	$(PYTHON) -m venv .venv
+	$(BIN)/pip install --disable-pip-version-check -q -c constraints.txt torch==2.13.0
+	$(BIN)/pip install --disable-pip-version-check -q -c constraints.txt -e '.[dev,unwrap,bench]'
+	touch $@
+
+demo: setup
+	$(BIN)/nisp sample -o demo
+	$(BIN)/nisp encode demo/sample.obj -o demo/sample.nisp
+	$(BIN)/nisp decode demo/sample.nisp --mesh -o demo/decoded.glb
+	$(BIN)/nisp compare demo/sample.obj demo/decoded.glb
+	ls -l demo
+
+lint: setup
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/mypy
+
+test: lint
+	$(BIN)/pytest -n 2
+
+bench: setup
+	$(BIN)/python -m benchmarks.main_job --assets $(ASSETS)

@@ -1,0 +1,70 @@
+"""Samples: where they lie and what they are labelled with."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from nispcodec.mesh.samples import BETA, CUBE, Sampler, barycentric, normalising_frame
+from tests.mesh.shapes import box_asset, hemisphere, soup
+
+
+def test_the_frame_is_centred_and_of_radius_one() -> None:
+    frame = normalising_frame(soup(hemisphere() * 3 + [5, 6, 7]))
+    assert frame.center == pytest.approx((5, 6, 8.5))
+    assert frame.radius == pytest.approx(np.hypot(3, 1.5))
+
+
+def test_the_papers_sampler_and_the_direct_one_agree() -> None:
+    """Distance histograms of the importance sampler and of displaced surface points."""
+    sampler = Sampler(box_asset(), seed=0)
+    bins = np.array([0, 0.25, 0.5, 1, 1.5, 2, 3]) / BETA
+    count = 20_000
+    reference, direct = sampler.importance(count), sampler.near(count, 1 / BETA)
+    shares = [np.histogram(np.abs(s.sdf), bins)[0] / len(s) for s in (reference, direct)]
+    assert np.abs(shares[0] - shares[1]).max() < 0.025
+    inside = [(s.sdf < 0).mean() for s in (reference, direct)]
+    assert inside[0] == pytest.approx(inside[1], abs=0.03)
+
+
+def test_labels_of_the_box() -> None:
+    sampler = Sampler(box_asset(), seed=0)
+    side = sampler.frame.to_normalised(np.array([[1.2, 0.0, 0.5], [-1.5, 0.25, 0.0]]))
+    labels = sampler.label(side)
+    assert labels.sdf == pytest.approx(np.array([0.2, 0.5]) / sampler.frame.radius)
+    uv = labels.uv * sampler.table.uv_scale + sampler.table.uv_offset
+    assert labels.chart.tolist() == [1, 0]
+    assert uv[0] == pytest.approx([(0.5 * 0.9 + 1) / 3, 0.75 * 0.9 / 2], abs=1e-6)
+    assert uv[1] == pytest.approx([0.625 * 0.9 / 3, 0.5 * 0.9 / 2], abs=1e-6)
+
+
+def test_every_uv_target_is_in_the_unit_square() -> None:
+    sampler = Sampler(box_asset(), seed=0)
+    uv = sampler.surface(2000).uv
+    assert uv.min() >= 0
+    assert uv.max() <= 1
+
+
+def test_the_same_seed_gives_the_same_samples_and_another_other_ones() -> None:
+    draws = [Sampler(box_asset(), seed).near(50, 0.01).points for seed in (3, 3, 4)]
+    assert np.array_equal(draws[0], draws[1])
+    assert not np.array_equal(draws[0], draws[2])
+
+
+def test_cube_samples_fill_the_cube() -> None:
+    points = Sampler(box_asset(), seed=0).cube(4000).points
+    assert np.abs(points).max() <= CUBE
+    assert np.abs(points).max(axis=0) == pytest.approx([CUBE] * 3, rel=0.01)
+
+
+def test_the_surface_is_sampled_by_area() -> None:
+    chart = Sampler(box_asset(), seed=0).surface(12_000).chart
+    assert np.bincount(chart) / 12_000 == pytest.approx(np.full(6, 1 / 6), abs=0.02)
+
+
+def test_barycentric_coordinates_rebuild_the_point() -> None:
+    random = np.random.default_rng(0)
+    triangles = random.normal(size=(40, 3, 3))
+    weights = random.dirichlet(np.ones(3), 40)
+    points = np.einsum("nc,ncx->nx", weights, triangles)
+    assert barycentric(triangles, points) == pytest.approx(weights)

@@ -1,0 +1,100 @@
+"""The rules of the house: which package may import what, and what stays out of the way."""
+
+from __future__ import annotations
+
+import ast
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parent.parent
+CORE = {"asset", "document", "errors", "network", "output", "progress", "texture"}
+
+# Package -> what it may import: third-party roots, and parts of nispcodec besides CORE.
+RULES: dict[str, tuple[set[str], set[str]]] = {
+    "mesh": ({"numpy", "scipy", "trimesh", "igl", "PIL", "xatlas"}, {"mesh"}),
+    "fit": ({"numpy", "torch"}, {"fit", "mesh"}),
+    "format": ({"numpy", "msgpack", "zstandard", "constriction"}, {"format"}),
+    "decode": (
+        {"numpy", "scipy", "skimage", "PIL", "threadpoolctl", "fast_simplification"},
+        {"decode"},
+    ),
+    "metrics": ({"numpy", "scipy", "skimage", "igl", "PIL"}, {"metrics"}),
+}
+
+
+def sources(package: str) -> Iterator[Path]:
+    return (ROOT / "nispcodec" / package).rglob("*.py")
+
+
+def imported(path: Path) -> set[str]:
+    found = set()
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.Import):
+            found |= {alias.name for alias in node.names}
+        elif isinstance(node, ast.ImportFrom):
+            assert node.level == 0, f"{path}: relative import"
+            found |= {f"{node.module}.{alias.name}" for alias in node.names}
+    return found
+
+
+def forbidden(name: str, package: str) -> bool:
+    third_party, ours = RULES[package]
+    root, _, rest = name.partition(".")
+    if root == "nispcodec":
+        return rest.split(".")[0] not in ours | CORE
+    return root not in sys.stdlib_module_names and root not in third_party
+
+
+@pytest.mark.parametrize("package", RULES)
+def test_a_package_imports_only_what_its_place_allows(package: str) -> None:
+    wrong = {
+        f"{path.relative_to(ROOT)} imports {name}"
+        for path in sources(package)
+        for name in imported(path)
+        if forbidden(name, package)
+    }
+    assert not wrong
+
+
+def test_nothing_in_the_library_imports_the_command_line_or_the_benchmarks() -> None:
+    for path in (ROOT / "nispcodec").rglob("*.py"):
+        roots = {name.split(".")[0] for name in imported(path)}
+        assert not roots & {"nispcodec_cli", "cli", "benchmarks", "tests"}, path
+
+
+def test_no_module_is_a_drawer_for_anything() -> None:
+    names = {path.stem for path in ROOT.rglob("nispcodec/**/*.py")}
+    assert not names & {"utils", "helpers", "common", "misc"}
+
+
+def loaded_by(code: str) -> set[str]:
+    script = f"{code}\nimport sys\nprint(*sys.modules)"
+    run = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True)
+    return set(run.stdout.splitlines()[-1].split())
+
+
+def test_importing_the_library_loads_nothing_heavy() -> None:
+    heavy = {"torch", "scipy", "igl", "trimesh", "PIL", "skimage", "msgpack", "zstandard"}
+    assert not heavy & loaded_by("import nispcodec")
+
+
+def test_the_command_answers_help_without_numpy() -> None:
+    code = "from click.testing import CliRunner; import nispcodec_cli as c\n"
+    code += "assert CliRunner().invoke(c.main, ['--help']).exit_code == 0"
+    assert not {"torch", "numpy", "rich"} & loaded_by(code)
+
+
+def test_queries_and_meshes_need_no_torch() -> None:
+    code = (
+        "import sys; sys.modules['torch'] = None\n"
+        "from tests.tiny import document\n"
+        "from nispcodec import NispModel\n"
+        "model = NispModel(document())\n"
+        "assert len(model.to_mesh(16).faces) > 0 and len(model.uv([[0.1, 0.2, 0.3]])) == 1"
+    )
+    run = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True)
+    assert run.returncode == 0, run.stderr
