@@ -12,7 +12,7 @@ from nispcodec.asset import FloatArray, TexturedMesh
 from nispcodec.errors import MeshError
 from nispcodec.mesh import wavefront
 from nispcodec.mesh.folder import Folder
-from nispcodec.mesh.mtl import MaterialReader
+from nispcodec.mesh.obj_materials import MaterialReader
 from nispcodec.mesh.polygons import triangulate
 
 Indices = NDArray[np.int64]
