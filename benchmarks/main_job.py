@@ -1,6 +1,6 @@
 """The main job on real assets, through the real command line: asked against measured.
 
-    python -m benchmarks.main_job --assets ../shared/assets -o benchmarks/results/main_job.json
+    python -m benchmarks.main_job --assets ../shared/assets [--only spot]
 
 Results are kept asset by asset: an interrupted run goes on where it stopped.
 """
@@ -29,6 +29,7 @@ from nispcodec.metrics.compare import compare
 from nispcodec.metrics.pictures import compare_pictures
 from nispcodec.metrics.surface import frame_of
 
+RESULTS = "benchmarks/results/main_job.json"
 NISP = Path(sys.executable).with_name("nisp")
 PRECISE = {"spot", "food_apple_01", "chess_king", "tea_set_01"}
 LARGE = {"flight_helmet", "gz_polaris"}
@@ -153,7 +154,7 @@ def store(path: Path, records: dict[str, Record]) -> None:
 @click.option("--again", is_flag=True, help="Measure assets that have a result already.")
 @click.option("--preset", default="balanced", show_default=True)
 @click.option("--keep", type=click.Path(path_type=Path), help="Leave .nisp and .glb files here.")
-@click.option("-o", "--output", type=click.Path(path_type=Path), required=True)
+@click.option("-o", "--output", type=click.Path(path_type=Path), default=RESULTS, show_default=True)
 def main(
     assets: Path, only: tuple[str, ...], again: bool, preset: str, keep: Path | None, output: Path
 ) -> None:
