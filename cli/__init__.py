@@ -11,7 +11,7 @@ from typing import Any
 
 import click
 
-COMMANDS = ("encode", "decode", "info", "compare", "query", "sample")
+COMMANDS = ("encode", "decode", "info", "verify", "recode", "compare", "query", "sample")
 
 
 class LazyGroup(click.Group):
