@@ -216,6 +216,8 @@ class _Scene:
         key = (accessor, source)
         if key not in self._uvs.starts:
             uvs = source.apply(stored)
+            if not np.isfinite(uvs).all():
+                attributes.fail("finite texture coordinates", "overflow in the texture transform")
             self._uvs.add(key, np.column_stack([uvs[:, 0], 1.0 - uvs[:, 1]]))
         return self._uvs.starts[key]
 

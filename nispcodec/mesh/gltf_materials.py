@@ -17,6 +17,7 @@ from nispcodec.mesh.images import TextureShelf
 
 _WRAPS = {10497: "repeat", 33071: "clamp", 33648: "mirror"}
 _FILTERS = {9728: "nearest", 9729: "linear"}
+_STRENGTHS = {"normal": "scale", "occlusion": "strength"}
 _IMAGE_EXTENSIONS = ("EXT_texture_webp", "EXT_texture_avif")
 _GLOSSY = "KHR_materials_pbrSpecularGlossiness"
 
@@ -103,7 +104,7 @@ class GltfMaterials:
         place = self._images[image]
         if place is None:
             return None
-        strength = info.number({"normal": "scale", "occlusion": "strength"}.get(slot, ""), 1.0)
+        strength = info.number(_STRENGTHS[slot], 1.0) if slot in _STRENGTHS else 1.0
         wrap, texture_filter = self._sampling(texture)
         return TextureMap(place, wrap, texture_filter, strength)
 

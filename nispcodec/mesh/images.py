@@ -25,7 +25,22 @@ _KEPT = {
     "WEBP": ("image/webp", ".webp"),
     "AVIF": ("image/avif", ".avif"),
 }
-_CONVERTED = ("TGA", "BMP", "DIB", "TIFF", "GIF", "DDS", "JPEG2000", "PPM", "PCX", "SGI", "ICO")
+_CONVERTED = (
+    "PSD",
+    "TGA",
+    "BMP",
+    "DIB",
+    "TIFF",
+    "GIF",
+    "DDS",
+    "JPEG2000",
+    "PPM",
+    "PCX",
+    "SGI",
+    "ICO",
+)
+# First bytes of formats that assets come with and that no reader here knows.
+_UNSUPPORTED = {b"v/1\x01": "an OpenEXR", b"#?RADIANCE": "a Radiance", b"\xabKTX": "a KTX"}
 # What Pillow's readers raise for malformed files.
 _BROKEN = (
     OSError,
@@ -49,8 +64,15 @@ class TextureShelf:
         self._warnings = warnings
         self._places: dict[bytes, int] = {}
 
-    def add(self, name: str, data: bytes, place: str) -> int:
-        """The index of the texture with these bytes; `place` names the file in messages."""
+    def add(self, name: str, data: bytes, place: str) -> int | None:
+        """The index of the texture with these bytes; `place` names the file in messages.
+
+        None, with a warning, for a sound format that is not supported.
+        """
+        kind = _unsupported(data)
+        if kind is not None:
+            self._warnings.append(f"{place}: {kind} image is not supported: left out")
+            return None
         if data not in self._places:
             texture = self._checked(name, data, place)
             self._places[data] = len(self.textures)
@@ -75,8 +97,14 @@ class TextureShelf:
 
 def is_grey(data: bytes, place: str) -> bool:
     """Whether an image has no colour anywhere, by a coarse look."""
+    if _unsupported(data) is not None:
+        return False
     small = _decoded(data, place).convert("RGB").resize((64, 64), PIL.Image.Resampling.NEAREST)
     return bool(np.ptp(np.asarray(small, dtype=np.int16), axis=2).max() <= 2)
+
+
+def _unsupported(data: bytes) -> str | None:
+    return next((kind for start, kind in _UNSUPPORTED.items() if data.startswith(start)), None)
 
 
 def _decoded(data: bytes, place: str) -> PIL.Image.Image:

@@ -112,6 +112,8 @@ class MaterialReader:
             return None
         self._warn_of_options(statement)
         texture = self._shelf.add(path.name, data, str(path))
+        if texture is None:
+            return None
         clamp = [value.lower() for value in statement.options.get("-clamp", [])]
         wrap = "clamp" if clamp == ["on"] else "repeat"
         return TextureMap(texture, (wrap, wrap), strength=_strength(statement))

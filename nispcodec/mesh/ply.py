@@ -5,6 +5,7 @@ from __future__ import annotations
 import struct
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
+from pathlib import PurePath
 
 import numpy as np
 from numpy.typing import NDArray
@@ -182,12 +183,11 @@ def _materials(
     materials = []
     for file in files:
         path = folder.find(file)
+        texture = None if path is None else shelf.add(path.name, folder.read(path), str(path))
+        maps = {} if texture is None else {"base_color": TextureMap(texture)}
+        materials.append(Material(name=PurePath(file).stem or "material", maps=maps))
         if path is None:
             warnings.append(f"{name}: image {file!r} not found")
-            materials.append(Material())
-        else:
-            used = TextureMap(shelf.add(path.name, folder.read(path), str(path)))
-            materials.append(Material(name=path.stem, maps={"base_color": used}))
     return tuple(materials) or (Material(),), tuple(shelf.textures)
 
 

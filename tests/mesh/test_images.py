@@ -48,6 +48,15 @@ def test_other_formats_become_png_with_a_warning(format: str):
     assert warnings == [f"a.x: a {format} image, converted to PNG"]
 
 
+@pytest.mark.parametrize("start", [b"v/1\x01", b"#?RADIANCE\n", b"\xabKTX 20"])
+def test_sound_formats_that_are_not_supported_are_named(start: bytes):
+    textures, warnings = shelf()
+    assert textures.add("a.x", start + b"...", "a.x") is None
+    assert "a.x: a" in warnings[0]
+    assert "not supported" in warnings[0]
+    assert textures.textures == []
+
+
 def test_equal_bytes_are_one_texture_and_equal_names_stay_apart():
     textures, _ = shelf()
     added = [
