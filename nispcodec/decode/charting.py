@@ -11,7 +11,9 @@ from nispcodec.decode.evaluate import classify
 from nispcodec.decode.extract import Surface
 from nispcodec.network import Network
 
-SPECK = 4
+# Area, in the normalised frame, below which a patch of one chart is a mistake of the field.
+SPECK_AREA = 2.5e-4
+SPECK_VERTICES = 4
 ROUNDS = 3
 
 Charts = NDArray[np.int32]
@@ -22,8 +24,11 @@ def vertex_charts(network: Network, surface: Surface) -> Charts:
     """The chart of each vertex (n,), specks of wrong chart voted away."""
     charts = classify(network, surface.positions)
     edges = unique_edges(surface.faces)
+    least = max(SPECK_VERTICES, round(SPECK_AREA / surface.cell**2))
     for _ in range(ROUNDS):
-        charts = _without_specks(charts, edges)
+        before, charts = charts, _without_specks(charts, edges, least)
+        if np.array_equal(before, charts):
+            break
     return charts
 
 
@@ -34,14 +39,14 @@ def unique_edges(faces: NDArray[np.int32]) -> Pairs:
     return np.column_stack([keys >> 32, keys & 0xFFFFFFFF])
 
 
-def _without_specks(charts: Charts, edges: Pairs) -> Charts:
-    """Patches of one chart with fewer than SPECK vertices take the chart of most neighbours."""
+def _without_specks(charts: Charts, edges: Pairs, least: int) -> Charts:
+    """Patches of one chart with fewer than `least` vertices take the chart of most neighbours."""
     a, b = edges.T
     same = charts[a] == charts[b]
     size = len(charts)
     graph = coo_array((same[same], (a[same], b[same])), shape=(size, size))
     count, patches = connected_components(graph, directed=False)
-    speck = (np.bincount(patches, minlength=count) < SPECK)[patches]
+    speck = (np.bincount(patches, minlength=count) < least)[patches]
     borders = np.concatenate([edges[~same], edges[~same][:, ::-1]])
     borders = borders[speck[borders[:, 0]] & ~speck[borders[:, 1]]]
     votes = patches[borders[:, 0]].astype(np.int64) << 32 | charts[borders[:, 1]]

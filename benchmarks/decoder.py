@@ -1,0 +1,223 @@
+"""The decoder's numbers: queries, extraction, seams, colour; against targets, peers and the paper.
+
+    python -m benchmarks.decoder --models DIR --assets ../shared/assets -o OUT.json
+
+DIR holds NAME.nisp for the assets NAME to measure.
+"""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+import time
+from collections.abc import Callable
+from dataclasses import replace
+from itertools import pairwise
+from pathlib import Path
+from typing import Any
+
+import click
+import numpy as np
+from numpy.typing import NDArray
+
+from benchmarks.machine import commit, machine, versions
+from nispcodec.asset import TexturedMesh
+from nispcodec.decode.atlas import asset_uv
+from nispcodec.decode.components import without_noise
+from nispcodec.decode.evaluate import classify, evaluate
+from nispcodec.decode.extract import extract
+from nispcodec.decode.meshing import textured_mesh
+from nispcodec.document import Document
+from nispcodec.format import unpack
+from nispcodec.mesh.load import load_mesh
+from nispcodec.metrics.compare import compare
+from nispcodec.network import Network, NetworkSpec
+
+POINTS = 400_000
+REPEATS = 5
+RESOLUTIONS = (256, 512, 1024)
+# Seconds for 10,000 queries on an RTX 2070 SUPER (the paper, section 5).
+PAPER = {"sdf_points_per_second": 10_000 / 0.3, "uv_points_per_second": 10_000 / 0.6}
+START = """
+import numpy, nispcodec, sys
+model = nispcodec.load(sys.argv[1])
+model.sdf(numpy.random.default_rng(0).uniform(-1, 1, (10_000, 3)))
+assert "torch" not in sys.modules
+"""
+
+Record = dict[str, Any]
+
+
+def best_seconds(work: Callable[[], object], repeats: int = REPEATS) -> float:
+    """The shortest of several runs, after one to warm up."""
+    work()
+    seconds = []
+    for _ in range(repeats):
+        started = time.perf_counter()
+        work()
+        seconds.append(time.perf_counter() - started)
+    return min(seconds)
+
+
+def matrix_peak() -> float:
+    """FLOP/s of a large float32 matrix product with all of BLAS's threads."""
+    size = 3072
+    matrix = np.random.default_rng(0).normal(size=(size, size)).astype(np.float32)
+    return 2 * size**3 / best_seconds(lambda: matrix @ matrix)
+
+
+def random_network(spec: NetworkSpec) -> Network:
+    """The topology with small normal weights: time does not depend on them."""
+    rng = np.random.default_rng(0)
+    shapes = spec.shapes.items()
+    return Network(spec, {k: rng.normal(0, 0.05, s).astype(np.float32) for k, s in shapes})
+
+
+def query_speed(sdf: Network, chart: Network | None, uv: Network | None) -> Record:
+    """Points a second for the SDF alone, and for the predicted chart and its UV."""
+    points = np.random.default_rng(0).uniform(-1, 1, (POINTS, 3)).astype(np.float32)
+    seconds = best_seconds(lambda: evaluate(sdf, points))
+    record: Record = {"sdf_points_per_second": round(POINTS / seconds)}
+    record["sdf_flops"] = 2 * sdf.spec.weight_count * record["sdf_points_per_second"]
+    if chart is not None and uv is not None:
+        seconds = best_seconds(lambda: chart_and_uv(chart, uv, points))
+        record["uv_points_per_second"] = round(POINTS / seconds)
+    return record
+
+
+def chart_and_uv(chart: Network, uv: Network, points: NDArray[np.float32]) -> object:
+    """What a UV query costs: the chart is predicted first."""
+    charts = classify(chart, points)
+    return evaluate(uv, points, charts if uv.spec.conditioning != "none" else None)
+
+
+def paper_queries() -> Record:
+    """8 x 64 networks, 30 Fourier inputs as published and 3 plain ones as in our presets."""
+    wide = (64,) * 8
+    charts = 16
+    plain = query_speed(
+        random_network(NetworkSpec(wide, 1)),
+        random_network(NetworkSpec(wide, charts)),
+        random_network(NetworkSpec(wide, 2, conditioning="embedding", charts=charts, embedding=4)),
+    )
+    options: Record = {"encoding": "fourier", "levels": 5, "w0": 1.0}
+    published = query_speed(
+        random_network(NetworkSpec(wide, 1, **{**options, "activation": "relu"})),
+        random_network(NetworkSpec(wide, charts, **options)),
+        random_network(NetworkSpec(wide, 2, conditioning="scalar", charts=charts, **options)),
+    )
+    return {"plain": plain, "published": published}
+
+
+def probe(model: Path, resolution: int, *options: str) -> Record:
+    """One extraction in its own process."""
+    module = [sys.executable, "-m", "benchmarks.extraction_probe"]
+    command = [*module, str(model), str(resolution), *options]
+    done = subprocess.run(command, capture_output=True, text=True, check=True)
+    answer: Record = json.loads(done.stdout)
+    return answer
+
+
+def extractions(model: Path) -> Record:
+    """Every resolution, the growth from each to the next, and the dense way at the lowest."""
+    runs = {str(resolution): probe(model, resolution) for resolution in RESOLUTIONS}
+    seconds = [run["seconds"] for run in runs.values()]
+    growth = [round(after / before, 2) for before, after in pairwise(seconds)]
+    return runs | {"growth": growth, "dense_256": probe(model, RESOLUTIONS[0], "--dense")}
+
+
+def start_seconds(model: Path) -> float:
+    """Import, load and 10,000 queries as a whole process."""
+    command = [sys.executable, "-c", START, str(model)]
+    return round(best_seconds(lambda: subprocess.run(command, check=True)), 3)
+
+
+def soundness(mesh: TexturedMesh, dropped: int) -> Record:
+    """Cracks and doubled vertices, which must be 0; components that were dropped as noise."""
+    faces = mesh.faces.astype(np.int64)
+    edges = np.stack([faces, np.roll(faces, -1, axis=1)], axis=2).reshape(-1, 2)
+    forth, back = (np.unique(edges @ weights) for weights in ([1 << 32, 1], [1, 1 << 32]))
+    return {
+        "faces": len(faces),
+        "open_edges": len(np.setdiff1d(forth, back)),
+        "edges_used_twice": len(edges) - len(forth),
+        "duplicate_vertices": len(mesh.positions) - len(np.unique(mesh.positions, axis=0)),
+        "dropped_components": dropped,
+    }
+
+
+def naive(document: Document, resolution: int) -> TexturedMesh:
+    """One UV a vertex, as marching cubes alone gives it: smeared across every seam."""
+    mesh, _ = textured_mesh(document, resolution)
+    surface, _ = without_noise(document.sdf, extract(document.sdf, resolution))
+    charts = np.zeros(len(surface.positions), np.int32)
+    if document.chart is not None:
+        charts = classify(document.chart, surface.positions)
+    return replace(
+        mesh,
+        positions=document.frame.to_world(surface.positions),
+        faces=surface.faces,
+        uvs=asset_uv(document, surface.positions, charts).astype(np.float64),
+        uv_faces=surface.faces,
+        face_materials=document.charts.materials[charts[surface.faces[:, 0]]].astype(np.int32),
+    )
+
+
+def fidelity(document: Document, original: TexturedMesh) -> Record:
+    """Soundness of the decoded mesh at 256, its distortion, and the colour of the naive one."""
+    mesh, report = textured_mesh(document, RESOLUTIONS[0])
+    measured = compare(original, mesh)
+    record = {"soundness": soundness(mesh, report.dropped), "geometry": measured["geometry"]}
+    if document.uv is None:
+        return record
+    smeared = compare(original, naive(document, RESOLUTIONS[0]))
+    return record | {
+        "uv": measured["uv"],
+        "color_psnr": measured["color"]["psnr"],
+        "color_psnr_naive": smeared["color"]["psnr"],
+    }
+
+
+def measured_asset(model: Path, assets: Path) -> Record:
+    """Everything about one asset."""
+    document = unpack(model.read_bytes())
+    source = assets / model.stem / f"{model.stem}.obj"
+    return {
+        "queries": query_speed(document.sdf, document.chart, document.uv),
+        "start_seconds": start_seconds(model),
+        "extraction": extractions(model),
+        **fidelity(document, load_mesh(source)),
+    }
+
+
+@click.command()
+@click.option("--models", type=click.Path(path_type=Path, exists=True), required=True)
+@click.option("--assets", type=click.Path(path_type=Path, exists=True), required=True)
+@click.option("-o", "--output", type=click.Path(path_type=Path), required=True)
+@click.option("--only", multiple=True, help="Names of assets; all in --models by default.")
+def main(models: Path, assets: Path, output: Path, only: tuple[str, ...]) -> None:
+    """Measure the decoder on every NAME.nisp in MODELS."""
+    peak = matrix_peak()
+    record: Record = {
+        "machine": machine(),
+        "versions": versions(),
+        "commit": commit(),
+        "matrix_product_flops": round(peak),
+        "paper": PAPER,
+        "queries_8x64": paper_queries(),
+        "assets": {},
+    }
+    plain = record["queries_8x64"]["plain"]
+    plain["share_of_peak"] = round(plain["sdf_flops"] / peak, 3)
+    for model in sorted(models.glob("*.nisp")):
+        if only and model.stem not in only:
+            continue
+        click.echo(model.stem)
+        record["assets"][model.stem] = measured_asset(model, assets)
+        output.parent.mkdir(parents=True, exist_ok=True)
+        output.write_text(json.dumps(record, indent=1) + "\n")
+
+
+if __name__ == "__main__":
+    main()
