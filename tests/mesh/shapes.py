@@ -8,10 +8,8 @@ from numpy.typing import NDArray
 from nispcodec.asset import Material, TexturedMesh
 
 CUBE_CORNERS = np.array([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)], float)
-CUBE_FACES = np.array(
-    [[0, 1, 3], [0, 3, 2], [4, 6, 7], [4, 7, 5], [0, 4, 5], [0, 5, 1]]
-    + [[2, 3, 7], [2, 7, 6], [0, 2, 6], [0, 6, 4], [1, 5, 7], [1, 7, 3]]
-)
+SIDES = [[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]]
+CUBE_FACES = np.array([[a, *pair] for a, b, c, d in SIDES for pair in ((b, c), (c, d))])
 
 
 def cube(low: tuple[float, float, float], size: float) -> NDArray[np.float64]:

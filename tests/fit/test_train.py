@@ -1,0 +1,137 @@
+"""The loop: it learns, keeps its best, survives divergence, stops when told, repeats exactly."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import torch
+from torch import Tensor
+
+from nispcodec.errors import FitError
+from nispcodec.fit.losses import chart_error, chart_loss, distance_error, relative_distance_loss
+from nispcodec.fit.module import Module
+from nispcodec.fit.parallel import fit_networks
+from nispcodec.fit.soap import Soap
+from nispcodec.fit.task import Batch, Schedule, Task
+from nispcodec.fit.train import train
+from nispcodec.mesh.samples import SampleSet
+from nispcodec.network import Network, NetworkSpec
+from nispcodec.progress import Progress, silent
+
+
+def ball_samples(count: int, seed: int) -> SampleSet:
+    """Distances to a ball of radius 1/2, its two halves as charts."""
+    points = np.random.default_rng(seed).uniform(-1, 1, (count, 3)).astype(np.float32)
+    sdf = np.linalg.norm(points, axis=1) - np.float32(0.5)
+    return SampleSet(points, sdf, (points[:, 0] > 0).astype(np.int32), points[:, :2])
+
+
+def sdf_task(steps: int = 300, rate: float = 1e-3, optimiser: str = "soap") -> Task:
+    spec = NetworkSpec((16, 16), 1, w0=5.0)
+    schedule = Schedule(steps, 256, rate, optimiser)
+    samples = ball_samples(4000, 0), ball_samples(500, 1)
+    return Task("sdf", spec, *samples, relative_distance_loss, distance_error, schedule)
+
+
+def chart_task() -> Task:
+    loss, error = chart_loss, chart_error
+    return replace(sdf_task(), name="chart", spec=NetworkSpec((8,), 2), loss=loss, error=error)
+
+
+def run(task: Task, listen: Callable[[Progress], None] = silent, seed: int = 0) -> Network:
+    return train(task, seed, "cpu", threading.Lock(), listen)
+
+
+@pytest.mark.parametrize("optimiser", ["soap", "adam"])
+def test_it_learns_a_ball(optimiser: str) -> None:
+    seen: list[Progress] = []
+    run(sdf_task(rate=3e-3, optimiser=optimiser), seen.append)
+    assert seen[-1].error < 0.07
+    assert seen[-1].error < seen[0].error
+    assert (seen[-1].step, seen[-1].steps, seen[-1].seconds_left) == (300, 300, 0)
+
+
+def test_the_returned_weights_are_the_best_seen() -> None:
+    seen: list[float] = []
+    task = sdf_task()
+
+    def noted(module: Module, batch: Batch) -> Tensor:
+        error = distance_error(module, batch).detach()
+        seen.append(float(error))
+        return error
+
+    network = run(replace(task, error=noted))
+    module = Module(task.spec, torch.Generator(), "cpu")
+    for matrix, (weight, bias), rate in zip(
+        module.matrices, network.layers, module.rates, strict=True
+    ):
+        joined = np.concatenate([weight, bias[:, None]], axis=1) * rate
+        matrix.data = torch.from_numpy(joined.astype(np.float32))
+    final = float(distance_error(module, Batch.of(task.held_out, "cpu")).detach())
+    assert final == pytest.approx(min(seen), rel=1e-3)
+
+
+def test_divergence_is_noticed_told_and_survived() -> None:
+    """The held-out error is made to explode once, in the middle."""
+    calls = {"count": 0}
+
+    def explodes(module: Module, batch: Batch) -> Tensor:
+        calls["count"] += 1
+        error = distance_error(module, batch)
+        return error * float("nan") if calls["count"] == 6 else error
+
+    notes: list[str] = []
+    task = replace(sdf_task(), error=explodes)
+    network = run(task, lambda progress: notes.append(progress.note))
+    told = [note for note in notes if note]
+    assert len(told) == 1
+    assert "diverged" in told[0]
+    assert "0.0005" in told[0]
+    assert all(np.isfinite(tensor).all() for tensor in network.tensors.values())
+
+
+def test_a_hopeless_fit_is_an_error() -> None:
+    task = replace(sdf_task(), error=lambda module, batch: torch.tensor(float("nan")))
+    with pytest.raises(FitError, match=r"sdf network.*does not converge"):
+        run(task)
+
+
+def test_the_same_seed_gives_the_same_weights_on_any_number_of_threads() -> None:
+    tasks = [sdf_task(100), chart_task()]
+    results = [
+        fit_networks(tasks, seed, "cpu", threads, silent)
+        for seed, threads in ((0, 1), (0, 2), (1, 2))
+    ]
+    weights = [result["sdf"].tensors["weight.1"] for result in results]
+    assert np.array_equal(weights[0], weights[1])
+    assert not np.array_equal(weights[0], weights[2])
+
+
+def test_an_interrupt_stops_every_network() -> None:
+    steps: dict[str, int] = {}
+
+    def interrupted(progress: Progress) -> None:
+        steps[progress.network] = progress.step
+        if progress.network == "sdf" and progress.step >= 50:
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        fit_networks([sdf_task(), chart_task()], 0, "cpu", 2, interrupted)
+    assert max(steps.values()) < 300
+    assert torch.get_num_threads() >= 1
+
+
+def test_soap_finds_the_minimum_of_a_badly_scaled_quadratic() -> None:
+    torch.manual_seed(0)
+    scales = torch.logspace(-3, 0, 6)
+    target = torch.randn(4, 6)
+    parameter = torch.zeros(4, 6, requires_grad=True)
+    soap = Soap([parameter], [1.0])
+    for step in range(600):
+        parameter.grad = (parameter.detach() - target) * scales**2
+        soap.step(0.05 * (1 - step / 600))
+    assert torch.allclose(parameter, target, atol=0.02)
