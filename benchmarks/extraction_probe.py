@@ -48,7 +48,7 @@ def dense(document: Document, resolution: int) -> dict[str, float]:
     axis = np.linspace(-LIMIT, LIMIT, resolution + 1, dtype=np.float32)
     grid = np.stack(np.meshgrid(axis, axis, axis, indexing="ij"), axis=-1).reshape(-1, 3)
     values = evaluate(document.sdf, grid).reshape((resolution + 1,) * 3)
-    faces = marching_cubes(values, 0.0)[1]
+    faces = marching_cubes(values, 0.0)[1]  # type: ignore[no-untyped-call]
     seconds = round(time.perf_counter() - started, 3)
     return {"seconds": seconds, "peak_bytes": peak_bytes(), "faces": len(faces)}
 

@@ -9,6 +9,7 @@ import subprocess
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from nispcodec.asset import Material, TexturedMesh, TextureMap
@@ -32,9 +33,11 @@ def node() -> list[str]:
     return [found, str(HERE / "validate_gltf.cjs")]
 
 
-def issues(node: list[str], mesh: TexturedMesh, folder: Path) -> dict:
+def issues(
+    node: list[str], mesh: TexturedMesh, folder: Path, colors: np.ndarray | None = None
+) -> dict:
     """The validator's issues with the mesh written as GLB."""
-    path = write_mesh(mesh, folder / "out.glb")[-1]
+    path = write_mesh(mesh, folder / "out.glb", colors)[-1]
     environment = os.environ | {"NODE_PATH": str(PACKAGES)}
     run = subprocess.run(
         [*node, str(path)], capture_output=True, text=True, check=True, env=environment, timeout=60
@@ -63,6 +66,13 @@ def test_mesh_without_uv_is_valid(node: list[str], tmp_path: Path) -> None:
     bare = replace(mesh, uv_faces=mesh.uv_faces * 0 - 1, materials=(every_map(1),) * 2)
     report = issues(node, bare, tmp_path)
     assert report["numErrors"] == 0, report["messages"]
+
+
+def test_vertex_colors_are_valid(node: list[str], tmp_path: Path) -> None:
+    model = NispModel(tiny.document())
+    mesh = model.to_mesh(24)
+    report = issues(node, mesh, tmp_path, model.color(mesh.positions))
+    assert report["numErrors"] == report["numWarnings"] == 0, report["messages"]
 
 
 def test_the_validator_would_notice(node: list[str], tmp_path: Path) -> None:

@@ -18,9 +18,11 @@ from nispcodec.decode.writers import write_mesh
 from nispcodec.decode.writers.glb import glb_bytes
 from nispcodec.decode.writers.obj import obj_files
 from nispcodec.errors import MeshError
+from nispcodec.texture import linear_to_srgb
 from tests import tiny
 
 PIXELS = np.arange(48, dtype=np.uint8).reshape(4, 4, 3)
+COLORS = np.array([[1, 0, 0, 1], [0, 1, 0, 1], [0, 0, 1, 1], [0.5, 0.5, 0.5, 1]], np.float32)
 
 
 @pytest.fixture
@@ -68,7 +70,7 @@ def accessor(tree: dict, binary: bytes, index: int) -> np.ndarray:
     view = tree["bufferViews"][item["bufferView"]]
     assert view["byteOffset"] % 4 == 0
     kind = {5126: "<f4", 5125: "<u4"}[item["componentType"]]
-    columns = {"SCALAR": 1, "VEC2": 2, "VEC3": 3}[item["type"]]
+    columns = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4}[item["type"]]
     data = binary[view["byteOffset"] : view["byteOffset"] + view["byteLength"]]
     return np.frombuffer(data, kind).reshape(item["count"], columns)
 
@@ -197,6 +199,32 @@ def test_ply_doubles_seams_only(mesh: TexturedMesh, tmp_path: Path) -> None:
     header = (tmp_path / "out.ply").read_bytes().split(b"end_header\n")[0].decode()
     corners = {(p, t) for p, t in zip(mesh.faces.flat, mesh.uv_faces.flat, strict=True)}
     assert f"element vertex {len(corners)}\n" in header
+
+
+@pytest.mark.parametrize("suffix", [".obj", ".ply"])
+def test_vertex_colors(mesh: TexturedMesh, tmp_path: Path, suffix: str) -> None:
+    path = write_mesh(mesh, tmp_path / f"out{suffix}", COLORS)[-1]
+    loaded = trimesh.load(path, force="mesh", process=False)
+    found = np.asarray(loaded.visual.vertex_colors)[:, :3] / 255
+    assert len(loaded.vertices) == 4
+    nearest = np.linalg.norm(loaded.vertices[:, None] - mesh.positions, axis=2).argmin(axis=1)
+    np.testing.assert_allclose(found, COLORS[nearest, :3], atol=0.01)
+
+
+def test_glb_colors_are_linear(mesh: TexturedMesh, tmp_path: Path) -> None:
+    tree, binary = glb_parts(write_mesh(mesh, tmp_path / "out.glb", COLORS)[-1].read_bytes())
+    (primitive,) = tree["meshes"][0]["primitives"]
+    found = accessor(tree, binary, primitive["attributes"]["COLOR_0"])
+    np.testing.assert_allclose(linear_to_srgb(found[:, :3]), COLORS[:, :3], atol=1e-4)
+    assert "images" not in tree
+
+
+def test_colors_that_do_not_fit_are_refused(mesh: TexturedMesh, tmp_path: Path) -> None:
+    with pytest.raises(MeshError, match=r"expected shape \(4, 4\)"):
+        write_mesh(mesh, tmp_path / "out.glb", np.ones((3, 4), np.float32))
+    with pytest.raises(MeshError, match="STL holds no colours"):
+        write_mesh(mesh, tmp_path / "out.stl", np.ones((4, 4), np.float32))
+    assert not list(tmp_path.iterdir())
 
 
 def test_unknown_suffix_names_the_choices(mesh: TexturedMesh, tmp_path: Path) -> None:

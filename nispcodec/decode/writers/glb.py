@@ -12,7 +12,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from nispcodec.asset import Material, Texture, TexturedMesh, TextureMap
+from nispcodec.decode.writers.colors import Colors
 from nispcodec.decode.writers.vertices import split_vertices, vertex_normals
+from nispcodec.texture import srgb_to_linear
 
 Json = dict[str, Any]
 
@@ -23,15 +25,19 @@ FILTERS = {"linear": (9729, 9987), "nearest": (9728, 9984)}
 WEBP = "EXT_texture_webp"
 
 
-def glb_bytes(mesh: TexturedMesh) -> bytes:
-    """The mesh as the bytes of a GLB file: V is flipped to glTF's top-left origin."""
-    return _Builder().build(mesh)
+def glb_bytes(mesh: TexturedMesh, colors: Colors | None = None) -> bytes:
+    """The mesh as the bytes of a GLB file: V is flipped to glTF's top-left origin.
+
+    Colours (n, 4), sRGB-encoded, become COLOR_0 in linear light.
+    """
+    return _Builder(colors).build(mesh)
 
 
 class _Builder:
     """Collects the JSON tree and the binary buffer that it points into."""
 
-    def __init__(self) -> None:
+    def __init__(self, colors: Colors | None) -> None:
+        self.colors = colors
         self.buffer = bytearray()
         self.tree: Json = {"asset": {"version": "2.0", "generator": "nispcodec"}}
         self.images: dict[int, int] = {}
@@ -95,6 +101,10 @@ class _Builder:
         if has_uv:
             flipped = np.column_stack([vertices.uvs[:, 0], 1 - vertices.uvs[:, 1]])
             attributes["TEXCOORD_0"] = self.accessor(flipped, "VEC2", ARRAY_BUFFER)
+        if self.colors is not None:
+            linear = self.colors[vertices.sources]
+            linear[:, :3] = srgb_to_linear(linear[:, :3])
+            attributes["COLOR_0"] = self.accessor(linear, "VEC4", ARRAY_BUFFER)
         return {
             "attributes": attributes,
             "indices": self.accessor(vertices.faces, "SCALAR", ELEMENT_ARRAY_BUFFER),

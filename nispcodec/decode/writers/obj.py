@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from nispcodec.asset import Material, TexturedMesh, TextureMap
+from nispcodec.decode.writers.colors import Colors
 
 # Occlusion and metallic-roughness share one image in glTF; MTL has no words for that.
 KEYWORDS = {
@@ -17,11 +18,15 @@ KEYWORDS = {
 }
 
 
-def obj_files(mesh: TexturedMesh, stem: str) -> dict[str, bytes]:
+def obj_files(mesh: TexturedMesh, stem: str, colors: Colors | None = None) -> dict[str, bytes]:
     """File name -> bytes of STEM.obj, STEM.mtl and one STEM_NAME for every texture in use.
 
+    Colours (n, 4) stand behind the positions, as many tools read them, without alpha; then there
+    is no MTL.
     Occlusion and metallic-roughness maps are left out, and images used by nothing else with them.
     """
+    if colors is not None:
+        return {f"{stem}.obj": _colored_obj(mesh, colors).encode()}
     images = [f"{stem}_{name}" for name in _unique([_plain(t.name) for t in mesh.textures])]
     names = _unique([_plain(material.name) for material in mesh.materials])
     slots = [slots for material in mesh.materials for slots in material.maps.items()]
@@ -47,6 +52,15 @@ def _obj(mesh: TexturedMesh, library: str, names: list[str]) -> str:
         parts.append(_rows("f %d/%d %d/%d %d/%d\n", both))
         parts.append(_rows("f %d %d %d\n", mesh.faces[without] + 1))
     return "".join(parts)
+
+
+def _colored_obj(mesh: TexturedMesh, colors: Colors) -> str:
+    vertices = np.hstack([mesh.positions, colors[:, :3]])
+    return (
+        f"o {_plain(mesh.name)}\n"
+        + _rows("v %.9g %.9g %.9g %.4g %.4g %.4g\n", vertices)
+        + _rows("f %d %d %d\n", mesh.faces + 1)
+    )
 
 
 def _rows(pattern: str, values: NDArray[np.generic]) -> str:

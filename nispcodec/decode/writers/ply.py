@@ -1,26 +1,45 @@
-"""Binary PLY: vertices with texture coordinates s, t; no materials."""
+"""Binary PLY: vertices with texture coordinates or colours; no materials."""
 
 from __future__ import annotations
 
 import numpy as np
 
 from nispcodec.asset import TexturedMesh
+from nispcodec.decode.writers.colors import Colors
 from nispcodec.decode.writers.vertices import split_vertices
 
 
-def ply_bytes(mesh: TexturedMesh) -> bytes:
-    """The mesh as the bytes of a binary little-endian PLY file; a seam's vertices are doubled."""
+def ply_bytes(mesh: TexturedMesh, colors: Colors | None = None) -> bytes:
+    """The mesh as the bytes of a binary little-endian PLY file.
+
+    A seam's vertices are doubled for their UVs s, t; colours (n, 4) become red, green, blue, alpha.
+    """
     vertices = split_vertices(mesh, np.arange(len(mesh.faces)))
-    rows = np.column_stack([vertices.positions, vertices.uvs]).astype("<f4")
+    fields = [(name, "<f4") for name in ("x", "y", "z")]
+    values = list(vertices.positions.T)
+    if colors is None:
+        fields += [("s", "<f4"), ("t", "<f4")]
+        values += list(vertices.uvs.T)
+    else:
+        fields += [(name, "u1") for name in ("red", "green", "blue", "alpha")]
+        values += list(np.rint(colors[vertices.sources] * 255).T)
+    rows = np.empty(len(vertices.positions), fields)
+    for (name, _), column in zip(fields, values, strict=True):
+        rows[name] = column
     faces = np.empty(len(vertices.faces), [("count", "u1"), ("corners", "<i4", 3)])
     faces["count"], faces["corners"] = 3, vertices.faces
-    header = [
+    return _header(fields, len(rows), len(faces)) + rows.tobytes() + faces.tobytes()
+
+
+def _header(fields: list[tuple[str, str]], vertices: int, faces: int) -> bytes:
+    types = {"<f4": "float", "u1": "uchar"}
+    lines = [
         "ply",
         "format binary_little_endian 1.0",
-        f"element vertex {len(rows)}",
-        *(f"property float {name}" for name in ("x", "y", "z", "s", "t")),
-        f"element face {len(faces)}",
+        f"element vertex {vertices}",
+        *(f"property {types[kind]} {name}" for name, kind in fields),
+        f"element face {faces}",
         "property list uchar int vertex_indices",
         "end_header\n",
     ]
-    return "\n".join(header).encode() + rows.tobytes() + faces.tobytes()
+    return "\n".join(lines).encode()

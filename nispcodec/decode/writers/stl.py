@@ -7,10 +7,17 @@ import struct
 import numpy as np
 
 from nispcodec.asset import TexturedMesh
+from nispcodec.decode.writers.colors import Colors
+from nispcodec.errors import MeshError
 
 
-def stl_bytes(mesh: TexturedMesh) -> bytes:
-    """The mesh as the bytes of a binary STL file; UVs and materials are left out."""
+def stl_bytes(mesh: TexturedMesh, colors: Colors | None = None) -> bytes:
+    """The mesh as the bytes of a binary STL file; UVs and materials are left out.
+
+    Raises MeshError for colours.
+    """
+    if colors is not None:
+        raise MeshError("STL holds no colours: expected .glb, .ply or .obj")
     a, b, c = mesh.corners.transpose(1, 0, 2)
     normals = np.cross(b - a, c - a)
     lengths = np.linalg.norm(normals, axis=1, keepdims=True)
