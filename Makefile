@@ -1,12 +1,14 @@
 # make demo: set up, encode a sample asset, decode it, show sizes and errors
 # make test: set up, then everything that CI runs
+# make fuzz: RUNS files of a coverage-guided fuzzer against the parser
 # make bench: the numbers of benchmarks/, on the assets in ASSETS
 
 PYTHON ?= python3
 ASSETS ?= ../shared/assets
+RUNS ?= 2000000
 BIN := .venv/bin
 
-.PHONY: setup demo test lint bench
+.PHONY: setup demo test lint fuzz bench
 
 setup: .venv/ready
 
@@ -31,6 +33,10 @@ lint: setup
 
 test: lint
 	$(BIN)/pytest -n 2
+
+fuzz: setup
+	$(BIN)/pip install --disable-pip-version-check -q -c constraints.txt -e '.[fuzz]'
+	$(BIN)/python -m tests.fuzz.fuzz_unpack -runs=$(RUNS) -max_len=4096 -print_final_stats=1 build/corpus
 
 bench: setup
 	$(BIN)/python -m benchmarks.main_job --assets $(ASSETS)
