@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from nispcodec.decode.components import components, spurious, without
+from nispcodec.decode.components import components, spurious, without, without_noise
 from nispcodec.decode.evaluate import evaluate
 from nispcodec.decode.extract import LIMIT, Surface, extract
 from nispcodec.network import Network
@@ -66,6 +66,56 @@ def test_steep_field_loses_nothing() -> None:
     )
     gentle = tiny.octahedron(0.7)
     assert len(extract(steep, 40).faces) == len(extract(gentle, 40).faces)
+
+
+def dented(depth: float, width: float) -> Network:
+    """An octahedron of size 0.5 and, round (0, 0, 0.85), a dent of the field below zero."""
+    axes = np.vstack([np.eye(3), -np.eye(3)])
+    first = np.vstack([axes, axes])
+    bias = np.concatenate([np.zeros(6), -axes[:, 2] * 0.85])
+    second = np.zeros((2, 12))
+    second[0, :6], second[1, 6:] = 1 / np.sqrt(3), -1.0
+    last = np.array([[1.0, -depth / width]])
+    layers = [(first, bias), (second, np.array([0.0, width])), (last, [-0.5 / np.sqrt(3)])]
+    return tiny.relu_network([(np.asarray(w), np.asarray(b)) for w, b in layers])
+
+
+def test_noise_is_told_from_surface() -> None:
+    network = dented(depth=0.5, width=0.2)
+    surface = extract(network, 64)
+    assert components(surface)[0] == 2
+    cleaned, report = without_noise(network, surface)
+    assert (report.kept, report.dropped) == (1, 1)
+    assert report.dropped_faces == len(surface.faces) - len(cleaned.faces) > 0
+    assert_sound(cleaned.positions, cleaned.faces)
+    assert np.abs(cleaned.positions).max() < 0.51
+    kept, report = without_noise(network, surface, keep=True)
+    assert (report.kept, report.dropped) == (2, 0)
+    assert np.array_equal(kept.faces, surface.faces)
+
+
+def test_nothing_is_real_outside_the_unit_ball() -> None:
+    # Two octahedra with slopes of 1, one of them in a corner of the cube.
+    axes = np.vstack([np.eye(3), -np.eye(3)])
+    away = (np.abs(axes) * 0.9).sum(axis=1) * axes.sum(axis=1)
+    first, bias = np.vstack([axes, axes]), np.concatenate([np.zeros(6), -away])
+    second = np.zeros((2, 12))
+    second[0, :6], second[1, 6:] = 1 / np.sqrt(3), 1 / np.sqrt(3)
+    # min(a, b) = a - relu(a - b), both of them positive after a shift.
+    third = np.array([[1.0, 0.0], [1.0, -1.0]])
+    network = tiny.relu_network(
+        [
+            (first, bias),
+            (second, np.zeros(2)),
+            (third, np.zeros(2)),
+            (np.array([[1.0, -1.0]]), np.array([-0.1])),
+        ]
+    )
+    surface = extract(network, 64)
+    assert components(surface)[0] == 2
+    cleaned, report = without_noise(network, surface)
+    assert (report.kept, report.dropped) == (1, 1)
+    assert np.abs(cleaned.positions).max() < 0.2
 
 
 def test_small_real_bodies_stay(ball: Network) -> None:
