@@ -10,7 +10,7 @@ from __future__ import annotations
 import json
 import sys
 import tempfile
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
@@ -18,7 +18,7 @@ import click
 import numpy as np
 
 from benchmarks.machine import commit, machine, versions
-from benchmarks.measure import run
+from benchmarks.measure import Run, run
 from benchmarks.render import Scene, turntable
 from nispcodec.asset import TexturedMesh
 from nispcodec.decode.model import NispModel
@@ -87,13 +87,18 @@ def measure(source: Path, folder: Path, preset: str) -> Record:
         "preset": preset,
         "faces": len(original.faces),
         "decoded_faces": len(back.faces),
-        "encode": {"seconds": encoding.seconds, "peak_bytes": encoding.peak_bytes},
-        "decode": {"seconds": decoding.seconds, "peak_bytes": decoding.peak_bytes},
+        "encode": cost(encoding),
+        "decode": cost(decoding),
         "report": json.loads(encoding.stdout),
         "bytes": info["bytes"],
         "networks": info["networks"],
         "metrics": distortion(original, back, model),
     }
+
+
+def cost(finished: Run) -> Record:
+    """Time and memory of a command, without what it printed."""
+    return {name: value for name, value in asdict(finished).items() if name != "stdout"}
 
 
 def distortion(original: TexturedMesh, decoded: TexturedMesh, model: Path) -> Record:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import resource
 import subprocess
 import time
 from collections.abc import Sequence
@@ -13,9 +14,13 @@ INTERVAL = 0.2
 
 @dataclass(frozen=True)
 class Run:
-    """What a finished command took. `peak_bytes` is the largest sampled sum of PSS."""
+    """What a finished command took. `peak_bytes` is the largest sampled sum of PSS.
+
+    Where `cpu_seconds` is much less than `seconds` times the threads, others used the machine.
+    """
 
     seconds: float
+    cpu_seconds: float
     peak_bytes: int
     stdout: str
 
@@ -26,7 +31,7 @@ def run(command: Sequence[str | Path], scratch: Path) -> Run:
     `scratch` is a folder for the output of the command, which could fill a pipe.
     """
     out, err = scratch / "stdout", scratch / "stderr"
-    started, peak = time.monotonic(), 0
+    started, cpu, peak = time.monotonic(), _children_seconds(), 0
     with out.open("wb") as stdout, err.open("wb") as stderr:
         process = subprocess.Popen(list(map(str, command)), stdout=stdout, stderr=stderr)
         while process.poll() is None:
@@ -36,7 +41,12 @@ def run(command: Sequence[str | Path], scratch: Path) -> Run:
     if process.returncode != 0:
         last = err.read_text(errors="replace")[-800:]
         raise RuntimeError(f"{' '.join(map(str, command))}: exit {process.returncode}: {last}")
-    return Run(round(seconds, 2), peak, out.read_text())
+    return Run(round(seconds, 2), round(_children_seconds() - cpu, 2), peak, out.read_text())
+
+
+def _children_seconds() -> float:
+    used = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return used.ru_utime + used.ru_stime
 
 
 def family(pid: int) -> list[int]:
