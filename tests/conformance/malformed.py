@@ -188,7 +188,7 @@ def _encodings() -> Iterator[Malformed]:
     for name, (data, field) in cases.items():
         yield Malformed(name, container(rows(data)), "META", field)
     crowd = msgpack.packb({1: [[1] * 4095 for _ in range(5)]})
-    long = bytes(2**19 + 1)
+    long = bytes(2**18 + 1)
     for name, data, field in (("crowd", crowd, "values"), ("too-long", long, "length")):
         claim = {"payload": squeezed(data), "packing": 2, "decoded": len(data)}
         file = container(change(rows(), b"META", **claim))

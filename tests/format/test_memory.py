@@ -37,7 +37,7 @@ def bombs() -> dict[str, bytes]:
         "large texture": container([*rows(texture), packed(b"TXTR", bytes(2**25 - 2**20))]),
         "metadata crowd": container([packed(b"META", crowd), rows()[1]]),
         "metadata lists": container(
-            [packed(b"META", b"\xdc\x00\x78" + (b"\xdc\x10\x00" + b"\x90" * 4096) * 120), rows()[1]]
+            [packed(b"META", b"\xdc\x00\x3c" + (b"\xdc\x10\x00" + b"\x90" * 4096) * 60), rows()[1]]
         ),
         "nested arrays": container(rows(nested)),
         "many charts": container(rows(meta({3: 65535, 5: bytes(8192)}))),

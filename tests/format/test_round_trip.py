@@ -18,7 +18,7 @@ from tests.format.documents import assert_same, documents, full, network, quanti
 
 
 @given(documents())
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=40, deadline=None)
 def test_any_document(document: Document) -> None:
     data = pack(document)
     assert_same(unpack(data), document)
