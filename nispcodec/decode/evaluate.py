@@ -23,7 +23,7 @@ Floats = NDArray[np.float32]
 Charts = NDArray[np.int32]
 Integers = NDArray[np.integer]
 
-BLOCK = 4096
+BLOCK = 2048
 
 
 def evaluate(network: Network, points: Floats, charts: Integers | None = None) -> Floats:

@@ -17,7 +17,7 @@ from nispcodec.asset import Material, Texture, TexturedMesh, TextureMap
 from nispcodec.decode.writers import write_mesh
 from nispcodec.decode.writers.glb import glb_bytes
 from nispcodec.decode.writers.obj import obj_files
-from nispcodec.errors import MeshError
+from nispcodec.errors import MeshError, NispError
 from nispcodec.texture import linear_to_srgb
 from tests import tiny
 
@@ -235,7 +235,7 @@ def test_unknown_suffix_names_the_choices(mesh: TexturedMesh, tmp_path: Path) ->
 
 def test_failed_writing_leaves_nothing(mesh: TexturedMesh, tmp_path: Path) -> None:
     (tmp_path / "out.glb").mkdir()
-    with pytest.raises(OSError, match=r"out\.glb"):
+    with pytest.raises(NispError, match=r"out\.glb"):
         write_mesh(mesh, tmp_path / "out.glb")
     assert [path.name for path in tmp_path.iterdir()] == ["out.glb"]
 

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import os
-import tempfile
 from collections.abc import Callable
 from pathlib import Path
 
@@ -14,6 +12,7 @@ from nispcodec.decode.writers.obj import obj_files
 from nispcodec.decode.writers.ply import ply_bytes
 from nispcodec.decode.writers.stl import stl_bytes
 from nispcodec.errors import MeshError
+from nispcodec.output import write_atomic
 
 SINGLE: dict[str, Callable[[TexturedMesh, Colors | None], bytes]] = {
     ".glb": glb_bytes,
@@ -29,7 +28,7 @@ def write_mesh(mesh: TexturedMesh, path: Path, colors: Colors | None = None) -> 
     An OBJ puts its MTL and images beside it. Each file is written under another name and then
     renamed. `colors` (n, 4), sRGB-encoded in [0, 1], one a position, take the place of UVs,
     materials and textures. Raises MeshError for an unknown suffix, no faces, colours that do not
-    fit or that the format cannot hold; OSError when writing fails.
+    fit or that the format cannot hold; NispError when writing fails.
     """
     path = Path(path)
     if not len(mesh.faces):
@@ -39,7 +38,7 @@ def write_mesh(mesh: TexturedMesh, path: Path, colors: Colors | None = None) -> 
         mesh = untextured(mesh, colors)
     for name, data in _files(mesh, path, colors).items():
         written.append(path.with_name(name))
-        _replace(written[-1], data)
+        write_atomic(written[-1], data)
     return written
 
 
@@ -53,18 +52,3 @@ def _files(mesh: TexturedMesh, path: Path, colors: Colors | None) -> dict[str, b
         found = repr(path.suffix) if path.suffix else "none"
         raise MeshError(f"{path}: expected a suffix of {', '.join(SUFFIXES)}, found {found}")
     return {path.name: SINGLE[suffix](mesh, colors)}
-
-
-def _replace(path: Path, data: bytes) -> None:
-    handle, temporary = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
-    try:
-        with os.fdopen(handle, "wb") as file:
-            file.write(data)
-        # mkstemp makes files for the owner only; a mesh is to be read like any new file.
-        mask = os.umask(0)
-        os.umask(mask)
-        Path(temporary).chmod(0o666 & ~mask)
-        Path(temporary).replace(path)
-    except BaseException:
-        Path(temporary).unlink(missing_ok=True)
-        raise
