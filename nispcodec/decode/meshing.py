@@ -11,7 +11,7 @@ from nispcodec.decode.charting import vertex_charts
 from nispcodec.decode.components import ExtractionReport, without_noise
 from nispcodec.decode.extract import LIMIT, Surface, extract
 from nispcodec.decode.seams import cut_along_seams
-from nispcodec.decode.simplify import simplified
+from nispcodec.decode.simplify import deviation, simplest, simplified
 from nispcodec.document import Document
 
 DEFAULT_RESOLUTION = 256
@@ -25,17 +25,19 @@ def textured_mesh(
     document: Document,
     resolution: int | None = None,
     faces: int | None = None,
+    error: float | None = None,
     keep_spurious: bool = False,
 ) -> tuple[TexturedMesh, ExtractionReport]:
     """The document's surface in the world frame, textured, and a report on its extraction.
 
     resolution: cells along the cube's edge, see `default_resolution`; faces: the most triangles
-    that the mesh may have, seams included; keep_spurious: do not drop noise of the field.
+    that the mesh may have, seams included; error: as few triangles as keep the mean distance to the
+    field's surface below it (normalised frame); keep_spurious: do not drop noise of the field.
     """
-    resolution = resolution or default_resolution(document)
-    surface = extract(document.sdf, resolution)
-    cleaned, report = without_noise(document.sdf, surface, keep_spurious)
-    cut, charts = _cut(document, cleaned) if faces is None else _fitted(document, cleaned, faces)
+    surface, report = _surface(document, resolution, error, keep_spurious)
+    if error is not None:
+        surface = simplest(document.sdf, surface, error)
+    cut, charts = _cut(document, surface) if faces is None else _fitted(document, surface, faces)
     return _dressed(document, cut, charts), report
 
 
@@ -45,6 +47,19 @@ def default_resolution(document: Document) -> int:
         return DEFAULT_RESOLUTION
     wanted = int(np.ceil(2 * LIMIT / document.shell))
     return min(max(DEFAULT_RESOLUTION, wanted), MAX_RESOLUTION)
+
+
+def _surface(
+    document: Document, resolution: int | None, error: float | None, keep_spurious: bool
+) -> tuple[Surface, ExtractionReport]:
+    """The surface at the resolution asked for, or at one that is fine enough for `error`."""
+    cells = resolution or default_resolution(document)
+    while True:
+        surface, report = without_noise(document.sdf, extract(document.sdf, cells), keep_spurious)
+        given = resolution is not None or error is None or 2 * cells > MAX_RESOLUTION
+        if given or deviation(document.sdf, surface) <= (error or 0.0):
+            return surface, report
+        cells *= 2
 
 
 def _cut(document: Document, surface: Surface) -> tuple[Surface, IndexArray]:

@@ -95,18 +95,20 @@ class NispModel:
         self,
         resolution: int | None = None,
         faces: int | None = None,
+        error: float | None = None,
         keep_spurious: bool = False,
     ) -> TexturedMesh:
         """The surface as a textured mesh in the world frame.
 
         `resolution`: cells along the edge of the cube that is extracted; default 256, or more when
         the asset has sheets thinner than that resolves. `faces`: the most triangles to return; the
-        surface is simplified to fit. `keep_spurious` keeps the components that are recognised as
-        noise of the field.
+        surface is simplified to fit. `error`: as few triangles as keep the mean distance to the
+        field's surface below it, normalised frame. `keep_spurious` keeps the components that are
+        recognised as noise of the field.
         """
         from nispcodec.decode.meshing import textured_mesh
 
-        return textured_mesh(self.document, resolution, faces, keep_spurious)[0]
+        return textured_mesh(self.document, resolution, faces, error, keep_spurious)[0]
 
     def _charts(self, normalised: Floats) -> Integers:
         network = self.document.chart

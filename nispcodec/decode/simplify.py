@@ -8,11 +8,15 @@ from __future__ import annotations
 
 import numpy as np
 
+from nispcodec.decode.evaluate import evaluate
 from nispcodec.decode.extract import Surface
+from nispcodec.network import Network
 
 # How eagerly long edges collapse, 0 to 10: above 5 thin parts fold over, below 5 counts are missed.
 AGGRESSIVENESS = 5
 ROUGHNESS = 1e-3
+# Triangles that are left after each step of a search for the fewest.
+SHRINKAGE = 0.7
 
 
 def simplified(surface: Surface, faces: int) -> Surface:
@@ -29,3 +33,27 @@ def simplified(surface: Surface, faces: int) -> Surface:
     rough = surface.positions + noise.astype(np.float32)
     positions, corners = simplify(rough, surface.faces, target_count=faces, agg=AGGRESSIVENESS)
     return Surface(positions.astype(np.float32), corners.astype(np.int32), surface.cell)
+
+
+def simplest(network: Network, surface: Surface, error: float) -> Surface:
+    """The surface with fewer triangles, as long as its deviation stays within `error`."""
+    while True:
+        fewer = simplified(surface, int(SHRINKAGE * len(surface.faces)))
+        stuck = len(fewer.faces) >= len(surface.faces)
+        if stuck or deviation(network, fewer) > error:
+            return surface
+        surface = fewer
+
+
+def deviation(network: Network, surface: Surface) -> float:
+    """Mean distance of the triangles to the zero set, area-weighted, normalised frame.
+
+    The field's value at centroids and at the middles of edges stands for the distance.
+    """
+    corners = surface.positions[surface.faces]
+    middles = (corners + np.roll(corners, -1, axis=1)) / 2
+    points = np.concatenate([middles, corners.mean(axis=1, keepdims=True)], axis=1)
+    distances = np.abs(evaluate(network, points.reshape(-1, 3))).reshape(-1, 4).mean(axis=1)
+    a, b, c = corners.transpose(1, 0, 2)
+    areas = np.linalg.norm(np.cross(b - a, c - a), axis=1)
+    return float(np.average(distances, weights=areas)) if areas.any() else 0.0

@@ -170,6 +170,15 @@ def test_faces_bounds_the_mesh_and_keeps_its_seams(model: NispModel) -> None:
     assert len(model.to_mesh(16, faces=10**6).faces) == len(model.to_mesh(16).faces)
 
 
+def test_error_sets_the_size_of_the_mesh(model: NispModel) -> None:
+    ball = NispModel(tiny.document(tiny.sphere()))
+    coarse, fine = ball.to_mesh(64, error=2e-3), ball.to_mesh(64, error=4e-4)
+    assert 2 * len(coarse.faces) < len(fine.faces) < 10_000
+    for mesh, error in ((coarse, 2e-3), (fine, 4e-4)):
+        centres = ball.sdf(mesh.corners.mean(axis=1)) / ball.document.frame.radius
+        assert 0.2 * error < np.abs(centres).mean() < 2 * error
+
+
 def test_mesh_of_charts_without_uv() -> None:
     plain = tiny.document()
     table = ChartTable(plain.charts.materials, np.array([True, False]))
