@@ -23,13 +23,17 @@ def encode(values: Unsigned, widths: Widths) -> bytes:
 
 def decode(reader: Reader, name: str, widths: Widths) -> Unsigned:
     """The inverse of `encode`; the bits after the last integer must be zero."""
-    starts = np.cumsum(widths, dtype=np.int64) - widths
-    total = int(widths.sum(dtype=np.int64))
-    bits = np.unpackbits(np.frombuffer(reader.take((total + 7) // 8, name), np.uint8))
-    if bits[total:].any():
+    ends = np.cumsum(widths, dtype=np.int64)
+    total = int(ends[-1]) if len(ends) else 0
+    data = np.frombuffer(reader.take((total + 7) // 8, name), np.uint8)
+    if total % 8 and data[-1] & (0xFF >> total % 8):
         raise reader.error(name, "zero bits at the end", "a set bit")
-    values = np.zeros(len(widths), np.uint32)
-    for place in range(int(widths.max(initial=0))):
-        holds = widths > place
-        values[holds] = values[holds] << 1 | bits[starts[holds] + place]
-    return values
+    # Five bytes hold any 32 bits, wherever in a byte they begin.
+    starts = ends - widths
+    padded = np.concatenate([data, np.zeros(5, np.uint8)]).astype(np.uint64)
+    window = np.zeros(len(widths), np.uint64)
+    for byte in range(5):
+        window = window << np.uint64(8) | padded[(starts >> 3) + byte]
+    shift = (40 - (starts & 7) - widths).astype(np.uint64)
+    mask = (np.uint64(1) << widths.astype(np.uint64)) - np.uint64(1)
+    return (window >> shift & mask).astype(np.uint32)
