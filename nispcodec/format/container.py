@@ -57,6 +57,7 @@ def write_container(sections: Iterable[tuple[str, bool, bytes]]) -> bytes:
     rows = sorted(sections)
     if len(rows) > MAX_SECTIONS:
         raise FormatError("header", "section count", f"1 to {MAX_SECTIONS}", len(rows))
+    _check_order([_check_code(code.encode(errors="replace")) for code, _, _ in rows])
     offset = HEADER_SIZE + ENTRY_SIZE * len(rows)
     budget = MAX_UNPACKED
     table, payloads = b"", []
@@ -70,7 +71,6 @@ def write_container(sections: Iterable[tuple[str, bool, bytes]]) -> bytes:
         offset += len(payload)
         if offset > MAX_FILE:
             raise FormatError(code, "file length", f"at most {MAX_FILE} bytes", offset)
-    _check_order([_check_code(code.encode(errors="replace")) for code, _, _ in rows])
     start = _HEADER.pack(SIGNATURE, MAJOR, MINOR, len(rows), 0)[:12]
     return b"".join([start, struct.pack("<I", crc32(start + table)), table, *payloads])
 
@@ -122,8 +122,9 @@ def _pack(content: bytes, budget: int) -> tuple[str, bytes]:
 
 
 def _read_header(data: bytes) -> int:
-    if len(data) < HEADER_SIZE:
-        raise FormatError("header", "file length", f"at least {HEADER_SIZE} bytes", len(data))
+    if not HEADER_SIZE <= len(data) <= MAX_FILE:
+        expected = f"{HEADER_SIZE} to {MAX_FILE} bytes"
+        raise FormatError("header", "file length", expected, len(data))
     signature, major, _minor, count, checksum = _HEADER.unpack_from(data)
     if signature != SIGNATURE:
         raise FormatError("header", "signature", SIGNATURE, signature)

@@ -101,6 +101,8 @@ def test_weights_that_are_no_multiples_of_their_step() -> None:
         ({"info": {"a": "x" * 2000}}, "text length"),
         ({"extra": {"META": b""}}, "extra"),
         ({"extra": {"abcd": b""}}, "section code"),
+        ({"extra": {"\ud800": b""}}, "section code"),
+        ({"extra": {"LONGER": b""}}, "section code"),
         ({"extra": {f"X{i:03}": b"" for i in range(64)}}, "section count"),
     ],
 )
