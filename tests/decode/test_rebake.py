@@ -1,0 +1,69 @@
+"""Baking the model's colours into a new atlas."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from nispcodec.asset import TexturedMesh
+from nispcodec.decode.model import NispModel
+from nispcodec.decode.rebake import rebaked
+from nispcodec.errors import MeshError
+from nispcodec.texture import base_color, decode_image
+from tests import tiny
+
+
+@pytest.fixture(scope="module")
+def model() -> NispModel:
+    return NispModel(tiny.document())
+
+
+@pytest.fixture(scope="module")
+def plate(model: NispModel) -> TexturedMesh:
+    """A square across the seam between the two charts, with an atlas that leaves a margin."""
+    corners = np.array([[-0.3, -0.3, 0], [0.3, -0.3, 0], [0.3, 0.3, 0], [-0.3, 0.3, 0]])
+    return TexturedMesh(
+        positions=model.document.frame.to_world(corners),
+        faces=np.array([[0, 1, 2], [0, 2, 3]], np.int32),
+        uvs=np.array([[0.1, 0.1], [0.9, 0.1], [0.9, 0.9], [0.1, 0.9]]),
+        uv_faces=np.array([[0, 1, 2], [0, 2, 3]], np.int32),
+        face_materials=np.zeros(2, np.int32),
+    )
+
+
+def test_texels_hold_the_models_colors(model: NispModel, plate: TexturedMesh) -> None:
+    baked = rebaked(model, plate, 256)
+    image = decode_image(baked.textures[0])
+    assert image.shape == (256, 256, 4)
+    rng = np.random.default_rng(0)
+    shares = rng.dirichlet([1, 1, 1], 500)
+    faces = rng.integers(0, 2, 500)
+    points = np.einsum("nc,ncd->nd", shares, baked.corners[faces])
+    uvs = np.einsum("nc,ncd->nd", shares, baked.corner_uvs[faces])
+    away = np.abs(points[:, 0] - model.document.frame.center[0]) > 0.05
+    found = base_color(baked.materials[0], image, uvs)
+    np.testing.assert_allclose(found[away], model.color(points)[away], atol=0.03)
+
+
+def test_margin_repeats_the_nearest_texel(model: NispModel, plate: TexturedMesh) -> None:
+    image = decode_image(rebaked(model, plate, 64).textures[0])
+    np.testing.assert_array_equal(image[32, 0], image[32, 7])
+    assert image[0, 0, :3].sum() > 0
+
+
+def test_one_material_and_one_texture_remain(model: NispModel) -> None:
+    mesh = model.to_mesh(24)
+    atlas = replace(mesh, uvs=(mesh.uvs - mesh.uvs.min()) / np.ptp(mesh.uvs))
+    baked = rebaked(model, atlas, 32)
+    assert len(baked.materials) == len(baked.textures) == 1
+    assert not baked.face_materials.any()
+    assert np.array_equal(baked.faces, mesh.faces)
+
+
+def test_refusals(model: NispModel, plate: TexturedMesh) -> None:
+    with pytest.raises(MeshError, match="16 to 8192"):
+        rebaked(model, plate, 9000)
+    with pytest.raises(MeshError, match="found 2 without"):
+        rebaked(model, replace(plate, uv_faces=plate.uv_faces * 0 - 1), 64)
