@@ -62,7 +62,7 @@ def write_container(sections: Iterable[tuple[str, bool, bytes]]) -> bytes:
     budget = MAX_UNPACKED
     table, payloads = b"", []
     for code, critical, content in rows:
-        packing, payload = _pack(content, budget)
+        packing, payload = pack_content(content, budget)
         budget -= len(content) if packing == "zstd" else 0
         numbers = (offset, len(payload), len(content), crc32(payload))
         packing_number = 1 + PACKINGS.index(packing)
@@ -113,7 +113,8 @@ def content(entry: Entry) -> memoryview:
     return memoryview(unpacked)
 
 
-def _pack(content: bytes, budget: int) -> tuple[str, bytes]:
+def pack_content(content: bytes, budget: int) -> tuple[str, bytes]:
+    """Packing and payload: the shorter of raw and zstd, raw beyond `budget` bytes."""
     level = _ZSTD_LEVEL if len(content) < _LARGE else _ZSTD_LEVEL_LARGE
     squeezed = zstandard.ZstdCompressor(level=level, write_content_size=True).compress(content)
     if len(squeezed) < len(content) <= budget:

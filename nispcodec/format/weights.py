@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import struct
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-import zstandard
 from numpy.typing import NDArray
 
 from nispcodec.errors import FormatError
@@ -16,11 +16,13 @@ from nispcodec.format.codings.reader import Reader
 from nispcodec.format.constants import (
     CODINGS,
     MAX_SYMBOL,
+    MAX_UNPACKED,
     MAX_WEIGHTS,
     NETS,
     QUANTISED,
     SHORT_STEP,
 )
+from nispcodec.format.container import pack_content
 from nispcodec.network import Network, NetworkSpec, Weights
 
 _OWN = {"dense": dense, "coo": coo, "csc": csc, "csr": csr, "dia": dia}
@@ -39,11 +41,16 @@ class _Tensor:
 
 
 def encode(networks: dict[str, Network], coding: str | None) -> bytes:
-    """All tensors in file order; `coding` None takes the fewest bytes for each."""
+    """All tensors in file order; `coding` None takes the fewest bytes."""
     if coding is not None and coding not in CODINGS:
         raise FormatError(NETS, "coding", f"one of {', '.join(CODINGS)}", coding)
     _check_count([network.spec for network in networks.values()])
-    return b"".join(_encode_network(name, networks[name], coding) for name in networks)
+    prepared = [_prepare_network(name, network) for name, network in networks.items()]
+    if coding is not None:
+        return _section(prepared, [[coding] * len(tensors) for tensors in prepared])
+    # The section is packed as a whole, so that the best for each tensor may not be the best of all.
+    choices = [*_choices(prepared), *([[name] * len(t) for t in prepared] for name in CODINGS)]
+    return min((_section(prepared, choice) for choice in choices), key=_packed_length)
 
 
 def decode(
@@ -67,21 +74,29 @@ def _check_count(specs: list[NetworkSpec]) -> None:
         raise FormatError(NETS, "weights", f"at most {MAX_WEIGHTS}", total)
 
 
-def _encode_network(name: str, network: Network, coding: str | None) -> bytes:
-    tensors = [
+def _choices(prepared: list[list[_Tensor]]) -> Iterator[list[list[str]]]:
+    """The best coding for each tensor: without the coding entropy, then with it."""
+    own = [[_best_own(tensor) for tensor in tensors] for tensors in prepared]
+    yield [[coding for coding, _ in best] for best in own]
+    pooled = [entropy.Pool([t.matrix.ravel() for t in tensors]).sizes() for tensors in prepared]
+    yield [
+        [
+            coding if size <= pool_size else "entropy"
+            for (coding, size), pool_size in zip(best, sizes, strict=True)
+        ]
+        for best, sizes in zip(own, pooled, strict=True)
+    ]
+
+
+def _section(prepared: list[list[_Tensor]], codings: list[list[str]]) -> bytes:
+    return b"".join(map(_assemble, prepared, codings))
+
+
+def _prepare_network(name: str, network: Network) -> list[_Tensor]:
+    return [
         _prepare(f"{name}.{key}", tensor, network.steps.get(key))
         for key, tensor in network.tensors.items()
     ]
-    if coding is not None:
-        return _assemble(tensors, [coding] * len(tensors))
-    own = [_best_own(tensor) for tensor in tensors]
-    pooled = entropy.Pool([tensor.matrix.ravel() for tensor in tensors]).sizes()
-    mixed = [
-        coding if size <= pool_size else "entropy"
-        for (coding, size), pool_size in zip(own, pooled, strict=True)
-    ]
-    choices = [[coding for coding, _ in own], mixed, ["entropy"] * len(tensors)]
-    return min((_assemble(tensors, choice) for choice in choices), key=_packed_length)
 
 
 def _prepare(path: str, tensor: Weights, step: float | None) -> _Tensor:
@@ -102,8 +117,8 @@ def _best_own(tensor: _Tensor) -> tuple[str, int]:
 
 
 def _packed_length(payload: bytes) -> int:
-    """What the payload will take in the file, nearly: the section is packed as a whole."""
-    return min(len(payload), len(zstandard.ZstdCompressor(level=9).compress(payload)))
+    """What the payload would take in the file."""
+    return len(pack_content(payload, MAX_UNPACKED)[1])
 
 
 def _assemble(tensors: list[_Tensor], codings: list[str]) -> bytes:
