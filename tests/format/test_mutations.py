@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
+
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -59,7 +61,8 @@ def test_every_single_byte_of_the_content_changed(data: bytes, code: bytes) -> N
     for position in range(len(payload)):
         mutated = bytearray(payload)
         mutated[position] ^= 1 << position % 8
-        survives(container(change(rows, code, payload=bytes(mutated))))
+        with suppress(FormatError):
+            unpack(container(change(rows, code, payload=bytes(mutated))))
 
 
 @given(st.binary(max_size=200))
