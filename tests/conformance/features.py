@@ -15,6 +15,8 @@ from nispcodec.asset import SLOTS, WRAPS, Material, Texture, TextureMap
 from nispcodec.document import ChartTable, Document, Frame
 from nispcodec.format import pack
 from nispcodec.network import Network, NetworkSpec
+from tests.conformance.builder import container
+from tests.conformance.malformed import rows
 
 
 def network(hidden: tuple[int, ...], outputs: int, seed: int, **options: Any) -> Network:
@@ -213,5 +215,10 @@ def _containers() -> Iterator[tuple[str, bytes]]:
     yield "info", pack(dataclasses.replace(plain(), info=info))
     extra = {"AAAA": b"", "ZZ99": b"kept, whatever it is " * 20}
     yield "unknown-ancillary", pack(dataclasses.replace(plain(), extra=extra))
-    bmp_like = dataclasses.replace(textured().textures[0], data=textured().textures[0].data)
-    yield "textures-two-alike", pack(dataclasses.replace(textured(), textures=(bmp_like, bmp_like)))
+    yield "textures-two-alike", pack(dataclasses.replace(textured(), textures=_twins()))
+    yield "minor-version", container(rows(), minor=9)
+
+
+def _twins() -> tuple[Texture, Texture]:
+    image = texture("twin.png", "image/png", pixels(2, 2))
+    return image, image
