@@ -19,9 +19,10 @@ from nispcodec.decode.extract import LIMIT, Surface
 from nispcodec.network import Network
 
 OUTSIDE = 1.01
-SMALL_SHARE = 0.05
-# Mean slopes of real components, relative to the whole surface's: noise was seen at 3 to 7.
-SLOPES = (0.4, 1.7)
+# Slopes are relative to the whole surface's. Noise between the samples was seen at 3 to 7. Flat
+# pieces are mostly scraps of real detail that the fit could not hold: only specks are dropped.
+STEEP, SMALL_SHARE = 1.7, 0.05
+FLAT, SPECK_AREA = 0.4, 2e-3
 
 Integers = NDArray[np.int32]
 
@@ -66,8 +67,8 @@ def components(surface: Surface) -> tuple[int, Integers]:
 def spurious(network: Network, surface: Surface) -> tuple[NDArray[np.bool_], Integers]:
     """Which components are noise (c,) bool, and the component of each vertex (n,).
 
-    A component is noise when all of it lies outside the unit ball, or when it is a small part of
-    the surface and the field's mean slope on it is far from the slope elsewhere.
+    A component is noise when all of it lies outside the unit ball, or when it is small and the
+    field's mean slope on it is far from the slope elsewhere.
     """
     count, labels = components(surface)
     if count < 2:
@@ -77,9 +78,9 @@ def spurious(network: Network, surface: Surface) -> tuple[NDArray[np.bool_], Int
     vertices = np.bincount(labels, minlength=count)
     slopes = np.linalg.norm(gradient(network, surface.positions)[1], axis=1)
     slope = np.bincount(labels, slopes, minlength=count) / vertices / np.median(slopes)
-    unconfirmed = (slope < SLOPES[0]) | (slope > SLOPES[1])
-    small = vertices < SMALL_SHARE * len(labels)
-    return (nearest > OUTSIDE) | (small & unconfirmed), labels
+    steep = (slope > STEEP) & (vertices < SMALL_SHARE * len(labels))
+    flat = (slope < FLAT) & (vertices * surface.cell**2 < SPECK_AREA)
+    return (nearest > OUTSIDE) | steep | flat, labels
 
 
 def without(surface: Surface, unwanted: NDArray[np.bool_], labels: Integers) -> Surface:
