@@ -8,7 +8,7 @@ import subprocess
 from importlib.metadata import version
 from pathlib import Path
 
-LIBRARIES = ("nispcodec", "numpy", "scipy", "torch", "libigl", "scikit-image", "constriction")
+LIBRARIES = ("nispcodec", "numpy", "scipy", "torch", "libigl", "scikit-image", "zstandard")
 
 
 def machine() -> dict[str, str | int]:

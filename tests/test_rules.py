@@ -17,7 +17,7 @@ CORE = {"asset", "document", "errors", "network", "output", "progress", "texture
 RULES: dict[str, tuple[set[str], set[str]]] = {
     "mesh": ({"numpy", "scipy", "trimesh", "igl", "PIL", "xatlas"}, {"mesh"}),
     "fit": ({"numpy", "torch"}, {"fit", "mesh"}),
-    "format": ({"numpy", "msgpack", "zstandard", "constriction"}, {"format"}),
+    "format": ({"numpy", "msgpack", "zstandard"}, {"format"}),
     "decode": (
         {"numpy", "scipy", "skimage", "PIL", "threadpoolctl", "fast_simplification"},
         {"decode"},
