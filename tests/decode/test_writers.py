@@ -18,6 +18,7 @@ from nispcodec.decode.writers import write_mesh
 from nispcodec.decode.writers.glb import glb_bytes
 from nispcodec.decode.writers.obj import obj_files
 from nispcodec.errors import MeshError, NispError
+from nispcodec.mesh.load import load_mesh
 from nispcodec.texture import linear_to_srgb
 from tests import tiny
 
@@ -175,6 +176,27 @@ def test_trimesh_reads_the_same_triangles(mesh: TexturedMesh, tmp_path: Path, su
     assert triangles(loaded.vertices, loaded.faces) == triangles(mesh.positions, mesh.faces)
 
 
+@pytest.mark.parametrize("suffix", [".glb", ".obj"])
+def test_our_own_reader_finds_everything_again(
+    mesh: TexturedMesh, tmp_path: Path, suffix: str
+) -> None:
+    again = load_mesh(write_mesh(mesh, tmp_path / f"out{suffix}")[-1])
+    assert triangles(again.positions, again.faces) == triangles(mesh.positions, mesh.faces)
+    corner_uvs = [m.corner_uvs[m.has_uv].round(5).reshape(-1, 6).tolist() for m in (again, mesh)]
+    assert sorted(corner_uvs[0]) == sorted(corner_uvs[1])
+    wood = next(m for m in again.materials if m.maps)
+    assert set(wood.maps) == {"base_color", "normal"}
+    assert wood.metallic == 0.25
+    assert wood.maps["normal"].strength == pytest.approx(0.7)
+    data = {slot: again.textures[used.texture].data for slot, used in wood.maps.items()}
+    assert data == {"base_color": mesh.textures[0].data, "normal": mesh.textures[1].data}
+    if suffix == ".glb":
+        assert wood.base_color == mesh.materials[0].base_color
+        assert wood.maps["base_color"].wrap == ("clamp", "mirror")
+        assert wood.maps["base_color"].filter == "nearest"
+        assert (wood.alpha_mode, wood.alpha_cutoff) == ("mask", 0.3)
+
+
 def test_obj_text(mesh: TexturedMesh) -> None:
     files = obj_files(mesh, "out")
     assert set(files) == {"out.obj", "out.mtl", "out_a_b.png", "out_2_a_b.png"}
@@ -190,7 +212,7 @@ def test_obj_text(mesh: TexturedMesh) -> None:
     assert used == defined
     assert len(set(defined)) == 2
     assert "map_Kd out_a_b.png" in mtl
-    assert "norm out_2_a_b.png" in mtl
+    assert "norm -bm 0.7 out_2_a_b.png" in mtl
     assert "map_Bump -bm 0.7 out_2_a_b.png" in mtl
 
 

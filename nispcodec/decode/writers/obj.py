@@ -83,7 +83,7 @@ def _mtl(material: Material, name: str, images: list[str]) -> str:
 
 def _map(keyword: str, used: TextureMap, images: list[str]) -> str:
     options = " -clamp on" if used.wrap == ("clamp", "clamp") else ""
-    if keyword == "map_Bump" and used.strength != 1:
+    if keyword in KEYWORDS["normal"] and used.strength != 1:
         options += f" -bm {used.strength:.6g}"
     return f"{keyword}{options} {images[used.texture]}"
 
