@@ -11,7 +11,7 @@ import numpy as np
 from nispcodec.asset import Material, Texture, TexturedMesh
 from nispcodec.document import Document
 from nispcodec.errors import NispError
-from nispcodec.network import Network, to_half
+from nispcodec.network import Network
 from nispcodec.progress import Listener, Progress, silent
 
 if TYPE_CHECKING:
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from nispcodec.mesh.training import TrainingSets
 
 PRESETS = ("balanced", "paper")
-GAP = 0.05
+GAP = 0.02
 """Charts further apart than this (normalised frame) may share a number; not in the paper preset."""
 
 NOTABLE_SHEETS = 0.02
@@ -116,11 +116,10 @@ def _fit(
     from nispcodec.fit.parallel import fit_networks, resolve_device
     from nispcodec.fit.presets import tasks_for
 
-    tasks = tasks_for(config.preset, sampler.table, sets)
+    tasks = tasks_for(config.preset, sampler, sets)
     threads = config.threads or os.cpu_count() or 1
     device = resolve_device(config.device)
-    fitted = fit_networks(tasks, config.seed, device, threads, progress)
-    return {name: to_half(network) for name, network in fitted.items()}
+    return fit_networks(tasks, config.seed, device, threads, progress)
 
 
 def _shell(sampler: Sampler) -> float:

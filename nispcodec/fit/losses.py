@@ -18,8 +18,13 @@ def distance_error(module: Module, batch: Batch) -> Tensor:
 
 
 def relative_distance_loss(module: Module, batch: Batch) -> Tensor:
-    """Mean |f - SDF| / (|SDF| + NEAR): the nearer to the surface, the more an error costs."""
-    error = (module(batch.points)[:, 0] - batch.sdf).abs()
+    """Mean |f - SDF| / (|SDF| + NEAR): the nearer to the surface, the more an error costs.
+
+    What lies on the wrong side of zero costs twice, or a fit may settle for |SDF|.
+    """
+    field = module(batch.points)[:, 0]
+    wrong_side = functional.relu(-field * batch.sdf.sign())
+    error = (field - batch.sdf).abs() + wrong_side
     return (error / (batch.sdf.abs() + NEAR)).mean()
 
 

@@ -17,8 +17,12 @@ class Module:
     """A network under training.
 
     Each layer is one matrix [W | b], so that a preconditioner sees weight and bias together. Sine
-    layers hold w0 W and w0 b, which saves a pass over the activations.
+    layers hold w0 W and w0 b, which saves a pass over the activations. While `halved`, it computes
+    with the weights rounded to float16, as the file will hold them; gradients pass straight
+    through the rounding.
     """
+
+    halved = False
 
     def __init__(self, spec: NetworkSpec, generator: torch.Generator, device: str) -> None:
         self.spec = spec
@@ -41,12 +45,12 @@ class Module:
 
     def __call__(self, points: Tensor, charts: Tensor | None = None) -> Tensor:
         """(n, 3) points, (n,) chart numbers -> (n, outputs)."""
-        hidden = self._encoded(points, charts)
-        for matrix in self.matrices[:-1]:
-            before = _affine(matrix, hidden)
-            sine = self.spec.activation == "sine"
-            hidden = torch.sin(before) if sine else functional.relu(before)
-        return _OUTPUTS[self.spec.output](_affine(self.matrices[-1], hidden))
+        matrices, table = self._used()
+        hidden = self._encoded(points, charts, table)
+        activation = torch.sin if self.spec.activation == "sine" else functional.relu
+        for matrix in matrices[:-1]:
+            hidden = activation(_affine(matrix, hidden))
+        return _OUTPUTS[self.spec.output](_affine(matrices[-1], hidden))
 
     def network(self) -> Network:
         """The weights as they are now."""
@@ -58,20 +62,34 @@ class Module:
             tensors[f"bias.{layer}"] = _array(matrix[:, -1] / rate)
         return Network(self.spec, tensors)
 
-    def _encoded(self, points: Tensor, charts: Tensor | None) -> Tensor:
+    def _used(self) -> tuple[list[Tensor], Tensor | None]:
+        """The matrices and the embedding that the function is computed with."""
+        if not self.halved:
+            return self.matrices, self.table
+        pairs = zip(self.parameters, self.rates, strict=True)
+        used = [_halved(parameter, rate) for parameter, rate in pairs]
+        return used[: len(self.matrices)], None if self.table is None else used[-1]
+
+    def _encoded(self, points: Tensor, charts: Tensor | None, table: Tensor | None) -> Tensor:
         spec = self.spec
         if spec.conditioning == "scalar" and charts is not None:
             scalar = (2 * charts[:, None] + 1) / spec.charts - 1
             points = torch.cat([points, scalar.to(points.dtype)], dim=1)
         if spec.encoding == "fourier":
             points = _fourier(points, spec.levels)
-        if self.table is not None and charts is not None:
-            points = torch.cat([points, functional.embedding(charts, self.table)], dim=1)
+        if table is not None and charts is not None:
+            points = torch.cat([points, functional.embedding(charts, table)], dim=1)
         return points
 
 
 def _affine(matrix: Tensor, values: Tensor) -> Tensor:
     return torch.addmm(matrix[:, -1], values, matrix[:, :-1].T)
+
+
+def _halved(parameter: Tensor, rate: float) -> Tensor:
+    """The parameter as float16 holds parameter / rate; the gradient ignores the rounding."""
+    rounded = (parameter.detach() / rate).half().float() * rate
+    return parameter + (rounded - parameter).detach()
 
 
 def _fourier(points: Tensor, levels: int) -> Tensor:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from nispcodec.document import ChartTable
 from nispcodec.fit.losses import (
     chart_error,
     chart_loss,
@@ -12,42 +11,59 @@ from nispcodec.fit.losses import (
     uv_loss,
 )
 from nispcodec.fit.task import Objective, Schedule, Task
-from nispcodec.mesh.samples import SampleSet
+from nispcodec.mesh.samples import Sampler, SampleSet
 from nispcodec.mesh.training import TrainingSets
 from nispcodec.network import NetworkSpec
 
+MANY_PATCHES = 100
+
 PAPER_HIDDEN = (64,) * 8
 PAPER_LEVELS = 5
+SDF_STEPS = 9_000
+CHART_STEPS = 6_000
+UV_STEPS = 6_000
 PAPER_STEPS = 60_000
 """What some twenty minutes on two cores allow of the published 2000 epochs of 10^6 samples."""
 
 
-def tasks_for(preset: str, table: ChartTable, sets: TrainingSets) -> list[Task]:
+def tasks_for(preset: str, sampler: Sampler, sets: TrainingSets) -> list[Task]:
     """The networks to fit: a chart network for two charts or more, UV where charts have any."""
-    make = paper_tasks if preset == "paper" else balanced_tasks
+    table = sampler.table
     needed = {"sdf": True, "chart": len(table) > 1, "uv": bool(table.has_uv.any())}
-    return [task for task in make(len(table), sets) if needed[task.name]]
+    if preset == "paper":
+        tasks = paper_tasks(len(table), sets)
+    else:
+        tasks = balanced_tasks(len(table), sampler.patches, sets)
+    return [task for task in tasks if needed[task.name]]
 
 
-def balanced_tasks(charts: int, sets: TrainingSets) -> list[Task]:
-    """Small sine networks, most of the capacity near the surface, SOAP."""
-    sdf = NetworkSpec(hidden=(48,) * 4, outputs=1)
-    chart = NetworkSpec(hidden=(48,) * 3, outputs=charts)
+def balanced_tasks(charts: int, patches: int, sets: TrainingSets) -> list[Task]:
+    """Small sine networks, most of the capacity near the surface, SOAP.
+
+    An asset of many patches of texture gets wider chart and UV networks.
+    """
+    wide = patches > MANY_PATCHES
+    sdf = NetworkSpec(hidden=(64,) * 4, outputs=1)
+    chart = NetworkSpec(hidden=(56 if wide else 40,) * 3, outputs=charts)
     uv = NetworkSpec(
-        hidden=(48,) * 4, outputs=2, conditioning="embedding", charts=charts, embedding=4
+        hidden=(64 if wide else 48,) * 4,
+        outputs=2,
+        conditioning="embedding",
+        charts=charts,
+        embedding=4,
     )
     return _tasks(
         sets,
-        sdf=(sdf, relative_distance_loss, Schedule(steps=12_000)),
-        chart=(chart, chart_loss, Schedule(steps=6_000)),
-        uv=(uv, uv_loss, Schedule(steps=6_000)),
+        sdf=(sdf, relative_distance_loss, Schedule(SDF_STEPS)),
+        chart=(chart, chart_loss, Schedule(CHART_STEPS, batch=1024)),
+        uv=(uv, uv_loss, Schedule(UV_STEPS)),
     )
 
 
 def paper_tasks(charts: int, sets: TrainingSets) -> list[Task]:
     """The published networks, losses, optimiser and rates (paper, sections 3.2 and 4.1)."""
-    slow = Schedule(steps=PAPER_STEPS, rate=1e-4, optimiser="adam")
-    fast = Schedule(steps=PAPER_STEPS, rate=5e-4, optimiser="adam")
+    slow = Schedule(PAPER_STEPS, rate=1e-4, optimiser="adam", half=False)
+    fast = Schedule(PAPER_STEPS, rate=5e-4, optimiser="adam", half=False)
     return _tasks(
         sets,
         sdf=(paper_sdf(), distance_error, slow),

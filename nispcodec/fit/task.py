@@ -47,13 +47,14 @@ class Schedule:
     """How long and how fast: `steps` of `batch` points; `rate` is warmed up, then held or lowered.
 
     `optimiser` is "soap" (rate warmed up, then a cosine down to a hundredth) or "adam" (rate held,
-    as the paper does).
+    as the paper does). `half`: the weights will be stored as float16.
     """
 
     steps: int
     batch: int = 2048
     rate: float = 1e-3
     optimiser: str = "soap"
+    half: bool = True
 
 
 @dataclass(frozen=True)

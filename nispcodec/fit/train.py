@@ -14,13 +14,14 @@ from nispcodec.errors import FitError
 from nispcodec.fit.module import Module
 from nispcodec.fit.soap import Soap
 from nispcodec.fit.task import Batch, Schedule, Task
-from nispcodec.network import Network
+from nispcodec.network import Network, to_half
 from nispcodec.progress import Listener, Progress
 
 WARM_UP = 100
 CLIP = 1.0
 CHECKS = 40
 CHUNK = 25
+HALVED = 0.8
 DIVERGED = 4.0
 SETTLED = 0.25
 RETRIES = 4
@@ -35,8 +36,9 @@ def train(
 ) -> Network:
     """Fit one network; `core` is held while computing, so that tasks share the cores fairly.
 
-    A run whose held-out error explodes goes on from its best weights at half the rate. Raises
-    FitError when that does not help.
+    A run whose held-out error explodes goes on from its best weights at half the rate. From
+    `HALVED` of the steps on, a network that will be stored as float16 learns to live with that.
+    Raises FitError when lower rates do not help.
     """
     return _Run(task, seed, device, listen).fit(core)
 
@@ -62,6 +64,7 @@ class _Run:
         loss = 0.0
         for step in range(0, steps, CHUNK):
             with core:
+                self._halve(step)
                 for inner in range(step, min(step + CHUNK, steps)):
                     loss = self._step(inner)
                 done = min(step + CHUNK, steps)
@@ -69,9 +72,16 @@ class _Run:
             left = (time.monotonic() - started) / done * (steps - done)
             self.listen(Progress(self.task.name, "fit", done, steps, loss, self.error, left, note))
         self._restore()
-        return self.module.network()
+        network = self.module.network()
+        return to_half(network) if self.task.schedule.half else network
 
     error = math.nan
+
+    def _halve(self, step: int) -> None:
+        schedule = self.task.schedule
+        if schedule.half and not self.module.halved and step >= HALVED * schedule.steps:
+            self.module.halved = True
+            self.best_error, self.best = math.inf, self._weights()
 
     def _step(self, step: int) -> float:
         loss = self.task.loss(self.module, next(self.batches))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,6 +12,8 @@ from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
 from nispcodec.asset import FloatArray, IndexArray, TexturedMesh
+
+Kind = TypeVar("Kind")
 
 
 @dataclass(frozen=True)
@@ -33,7 +35,7 @@ def split_charts(mesh: TexturedMesh) -> Charts:
     (glTF) still connect. Charts are numbered by their first face.
     """
     position = row_ids(mesh.positions)[mesh.faces]
-    uv = np.where(mesh.has_uv[:, None], _uv_ids(mesh), -1)
+    uv = uv_ids(mesh)
     position = np.where(uv < 0, -1, position)
     material = np.repeat(mesh.face_materials[:, None], 3, axis=1)
     corners = row_ids(np.stack([material, position, uv], axis=-1).reshape(-1, 3))
@@ -48,23 +50,33 @@ def merge_distant(
     """Let charts of one material that are everywhere further apart than `gap` share a number.
 
     A position tells such charts apart already, so the networks need a number only to keep
-    neighbours apart: some hundred charts become a dozen labels. Graph colouring, most
-    constrained chart first (Welsh and Powell 1967). points (n, 3) cover the visible surface.
+    neighbours apart: some hundred charts become a dozen labels. points (n, 3) cover the visible
+    surface.
     """
-    neighbours = _neighbours(len(charts), points, point_charts, gap)
-    kinds = np.stack([charts.materials, charts.has_uv], axis=1)
-    label = np.full(len(charts), -1, dtype=np.int32)
-    kind_of_label: list[tuple[int, int]] = []
-    for chart in sorted(range(len(charts)), key=lambda c: -len(neighbours[c])):
-        kind = (int(kinds[chart, 0]), int(kinds[chart, 1]))
-        taken = {int(label[other]) for other in neighbours[chart]}
-        free = [i for i, k in enumerate(kind_of_label) if k == kind and i not in taken]
-        if not free:
-            free = [len(kind_of_label)]
-            kind_of_label.append(kind)
-        label[chart] = free[0]
-    table = np.asarray(kind_of_label, dtype=np.int32)
-    return Charts(label[charts.face_charts], table[:, 0], table[:, 1].astype(bool))
+    kinds = list(zip(charts.materials.tolist(), charts.has_uv.tolist(), strict=True))
+    labels, kind = colored(_neighbours(len(charts), points, point_charts, gap), kinds)
+    return Charts(
+        np.asarray(labels, dtype=np.int32)[charts.face_charts],
+        np.asarray([material for material, _ in kind], dtype=np.int32),
+        np.asarray([has_uv for _, has_uv in kind], dtype=bool),
+    )
+
+
+def colored(neighbours: list[set[int]], kinds: list[Kind]) -> tuple[list[int], list[Kind]]:
+    """Colour a graph so that neighbours differ and every colour is of one kind.
+
+    Returns each node's colour and each colour's kind. Most constrained node first (Welsh and
+    Powell 1967).
+    """
+    color = [-1] * len(neighbours)
+    kind_of_color: list[Kind] = []
+    for node in sorted(range(len(neighbours)), key=lambda n: -len(neighbours[n])):
+        taken = {color[other] for other in neighbours[node]}
+        alike = (c for c, k in enumerate(kind_of_color) if k == kinds[node] and c not in taken)
+        color[node] = next(alike, len(kind_of_color))
+        if color[node] == len(kind_of_color):
+            kind_of_color.append(kinds[node])
+    return color, kind_of_color
 
 
 def _neighbours(
@@ -89,10 +101,11 @@ def row_ids(rows: NDArray[np.number[Any]]) -> NDArray[np.int64]:
     return np.unique(rows + rows.dtype.type(0), axis=0, return_inverse=True)[1].reshape(-1)
 
 
-def _uv_ids(mesh: TexturedMesh) -> NDArray[np.int64]:
+def uv_ids(mesh: TexturedMesh) -> NDArray[np.int64]:
+    """(m, 3): equal UVs get equal numbers; -1 on faces without UV."""
     if not len(mesh.uvs):
         return np.full(mesh.faces.shape, -1, dtype=np.int64)
-    return row_ids(mesh.uvs)[mesh.uv_faces]
+    return np.where(mesh.has_uv[:, None], row_ids(mesh.uvs)[mesh.uv_faces], -1)
 
 
 def connected_faces(corners: NDArray[np.int64]) -> IndexArray:

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from nispcodec.asset import FloatArray
-from nispcodec.mesh.solid import SHELL, Solid, Triangles, winding_number
+from nispcodec.mesh.solid import SHELL, Solid, Triangles
 
 
 @dataclass(frozen=True)
@@ -42,7 +42,7 @@ class DistanceField:
         walls, sheets = self._walls.closest(points), self._sheets.closest(points)
         inside = np.zeros(len(points), dtype=bool)
         if signed:
-            inside = np.abs(winding_number(self.solid.bodies, points)) > 0.5
+            inside = np.abs(self.solid.winding.at(points)) > 0.5
         distance = np.where(inside, -walls.sdf, walls.sdf)
         thick = sheets.sdf - SHELL
         nearer = thick < distance

@@ -11,6 +11,7 @@ from nispcodec.asset import FloatArray, IndexArray, TexturedMesh
 from nispcodec.document import ChartTable, Frame
 from nispcodec.mesh.charts import Charts, merge_distant, split_charts
 from nispcodec.mesh.distance import Closest, DistanceField
+from nispcodec.mesh.self_seams import split_self_seams
 from nispcodec.mesh.solid import Triangles, area, build_solid
 
 BETA = 60.0
@@ -58,7 +59,8 @@ class SampleSet:
 class Sampler:
     """Draws and labels points around one mesh.
 
-    `gap` > 0 lets charts that are further apart than that share a number (`merge_distant`).
+    `gap` > 0 cuts charts that meet themselves (`split_self_seams`), then lets charts that are
+    further apart than that share a number (`merge_distant`).
     """
 
     def __init__(self, mesh: TexturedMesh, seed: int, gap: float = 0.0) -> None:
@@ -69,6 +71,9 @@ class Sampler:
         self.solid = build_solid(self._corners)
         self.field = DistanceField(self.solid)
         self.charts = split_charts(mesh)
+        if gap > 0:
+            self.charts = split_self_seams(mesh, self.charts)
+        self.patches = len(self.charts)
         if gap > 0:
             self.charts = self._merged(gap)
         self.table = chart_table(mesh, self.charts)

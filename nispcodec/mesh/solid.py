@@ -23,8 +23,13 @@ SHELL = 4e-3
 """Half the thickness (normalised frame) given to sheets."""
 
 COARSE_EDGE = 0.1
-FINE_EDGE = 0.02
+FINE_EDGE = 0.03
 DOUBT = 0.05
+
+# Half the time of libigl's default of 2; of 200,000 probes around a helmet of 82 bodies, one moved
+# across 1/2.
+ACCURACY = 1.5
+
 OPENNESS = 0.25
 GAP = 5e-3
 
@@ -38,14 +43,14 @@ class Solid:
     pieces  (p, 3, 3) float64: the outer faces and sheets, large ones subdivided
     parents (p,) int: the mesh face that each piece is part of
     sheet   (p,) bool: pieces that get a thickness
-    bodies  (q, 3, 3) float64: the closed or nearly closed faces, whose winding number is the sign
+    winding of the closed or nearly closed bodies: where it is beyond 1/2 is inside
     hidden_share, sheet_share: of the mesh's area
     """
 
     pieces: Triangles
     parents: NDArray[np.int64]
     sheet: NDArray[np.bool_]
-    bodies: Triangles
+    winding: Winding
     hidden_share: float
     sheet_share: float
 
@@ -54,7 +59,8 @@ def build_solid(corners: Triangles) -> Solid:
     """Sort the faces (m, 3, 3), normalised frame."""
     open_faces = _open_bodies(corners)
     bodies = corners[~open_faces]
-    pieces, parents, kind = _classify(bodies, np.flatnonzero(~open_faces))
+    winding = Winding(bodies)
+    pieces, parents, kind = _classify(winding, bodies, np.flatnonzero(~open_faces))
     hidden = kind == _HIDDEN
     total = area(corners).sum()
     sheets = np.flatnonzero(open_faces)
@@ -64,7 +70,7 @@ def build_solid(corners: Triangles) -> Solid:
         pieces=all_pieces,
         parents=np.concatenate([parents[~hidden], sheets]),
         sheet=is_sheet,
-        bodies=bodies,
+        winding=winding,
         hidden_share=float(area(pieces[hidden]).sum() / total),
         sheet_share=float(area(all_pieces[is_sheet]).sum() / total),
     )
@@ -83,28 +89,36 @@ def normals(triangles: Triangles) -> FloatArray:
     return np.divide(cross, length, out=np.zeros_like(cross), where=length > 0)
 
 
-def winding_number(bodies: Triangles, points: FloatArray) -> FloatArray:
-    """Generalised winding number of the triangle soup at (n, 3) points -> (n,)."""
-    if not len(bodies) or not len(points):
-        return np.zeros(len(points))
-    faces = np.arange(3 * len(bodies), dtype=np.int64).reshape(-1, 3)
-    vertices = np.ascontiguousarray(bodies.reshape(-1, 3))
-    winding: FloatArray = igl.fast_winding_number(vertices, faces, np.ascontiguousarray(points))
-    return winding
+class Winding:
+    """Generalised winding number of a triangle soup (m, 3, 3)."""
+
+    def __init__(self, bodies: Triangles) -> None:
+        self._tree = igl.FastWindingNumberBVH()
+        self._empty = not len(bodies)
+        if not self._empty:
+            faces = np.arange(3 * len(bodies), dtype=np.int64).reshape(-1, 3)
+            self._tree.init(np.ascontiguousarray(bodies.reshape(-1, 3)), faces)
+
+    def at(self, points: FloatArray) -> FloatArray:
+        """(n, 3) -> (n,)."""
+        if self._empty or not len(points):
+            return np.zeros(len(points))
+        number: FloatArray = self._tree.winding_number(np.ascontiguousarray(points), ACCURACY)
+        return number
 
 
 _OUTER, _HIDDEN, _SHEET, _MIXED = range(4)
 
 
 def _classify(
-    bodies: Triangles, parents: NDArray[np.int64]
+    winding: Winding, bodies: Triangles, parents: NDArray[np.int64]
 ) -> tuple[Triangles, NDArray[np.int64], NDArray[np.int64]]:
     """Subdivide the faces until each piece is of one kind: pieces, their parents, their kinds."""
     done: list[tuple[Triangles, NDArray[np.int64], NDArray[np.int64]]] = []
     todo, todo_parents = bodies, parents
     while len(todo):
         longest = _longest_edge(todo)
-        kind = _kind(bodies, todo, single=longest <= FINE_EDGE)
+        kind = _kind(winding, todo, single=longest <= FINE_EDGE)
         split = (longest > COARSE_EDGE) | (kind == _MIXED)
         kind = np.where(kind == _MIXED, _OUTER, kind)
         keep = ~split | (longest <= FINE_EDGE)
@@ -114,25 +128,25 @@ def _classify(
     return np.concatenate(pieces), np.concatenate(owners), np.concatenate(kinds)
 
 
-def _kind(bodies: Triangles, pieces: Triangles, single: NDArray[np.bool_]) -> NDArray[np.int64]:
+def _kind(winding: Winding, pieces: Triangles, single: NDArray[np.bool_]) -> NDArray[np.int64]:
     """Kind of each piece from its centroid, and for all but the small ones from its corners too."""
-    kind = _point_kind(bodies, pieces, np.full(3, 1 / 3))
+    kind = _point_kind(winding, pieces, np.full(3, 1 / 3))
     large = np.flatnonzero(~single)
     for corner in range(3):
         weights = np.full(3, 0.05)
         weights[corner] = 0.9
-        other = _point_kind(bodies, pieces[large], weights)
+        other = _point_kind(winding, pieces[large], weights)
         kind[large] = np.where(other == kind[large], other, _MIXED)
     return kind
 
 
-def _point_kind(bodies: Triangles, pieces: Triangles, weights: FloatArray) -> NDArray[np.int64]:
+def _point_kind(winding: Winding, pieces: Triangles, weights: FloatArray) -> NDArray[np.int64]:
     """Across a face the winding number falls by one, so one look in front is enough.
 
     Not quite by one across a card, whose rim shows: hence the doubtful band.
     """
     points = np.einsum("c,ncx->nx", weights, pieces) + OFFSET * normals(pieces)
-    front = winding_number(bodies, points)
+    front = winding.at(points)
     doubtful = np.abs(front + 0.5) < DOUBT
     inside = (np.abs(front) > 0.5) & (np.abs(front + 1) > 0.5)
     return np.select([doubtful, inside], [_SHEET, _HIDDEN], _OUTER)
@@ -147,7 +161,7 @@ def _open_bodies(corners: Triangles) -> NDArray[np.bool_]:
     vertices = row_ids(corners.reshape(-1, 3)).reshape(-1, 3)
     body = connected_faces(vertices)
     opening, centre, owner = _openings(corners, vertices, body)
-    exposed = (np.abs(winding_number(corners, centre)) < 0.8) & (_gap(corners, centre) > GAP)
+    exposed = (np.abs(Winding(corners).at(centre)) < 0.8) & (_gap(corners, centre) > GAP)
     count = int(body.max()) + 1
     open_area = np.bincount(owner[exposed], weights=opening[exposed], minlength=count)
     openness = open_area / np.maximum(np.bincount(body, weights=area(corners)), 1e-30)

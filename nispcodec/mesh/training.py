@@ -12,8 +12,12 @@ TIGHT = 1 / 250
 SKIN = 3e-3
 """Mean distance of the samples for charts and UVs: decisions far from the surface are wasted."""
 
-HELD_OUT = 30_000
-PAPER_SAMPLES = 1_000_000
+NEAR_COUNT = 200_000
+TIGHT_COUNT = 120_000
+CUBE_COUNT = 80_000
+SKIN_COUNT = 250_000
+HELD_OUT_COUNT = 20_000
+PAPER_COUNT = 1_000_000
 
 
 @dataclass(frozen=True)
@@ -29,20 +33,20 @@ class TrainingSets:
 def training_sets(sampler: Sampler) -> TrainingSets:
     """Near the surface for the most part; the whole cube for the sign far away."""
     distance = (
-        sampler.near(350_000, 1 / BETA),
-        sampler.near(150_000, TIGHT),
-        sampler.cube(100_000),
+        sampler.near(NEAR_COUNT, 1 / BETA),
+        sampler.near(TIGHT_COUNT, TIGHT),
+        sampler.cube(CUBE_COUNT),
     )
     return TrainingSets(
         distance=SampleSet.joined(distance),
-        skin=sampler.near(400_000, SKIN, signed=False),
-        held_distance=sampler.near(HELD_OUT, SKIN),
-        held_skin=sampler.surface(HELD_OUT),
+        skin=sampler.near(SKIN_COUNT, SKIN, signed=False),
+        held_distance=sampler.near(HELD_OUT_COUNT, SKIN),
+        held_skin=sampler.surface(HELD_OUT_COUNT),
     )
 
 
 def paper_training_sets(sampler: Sampler) -> TrainingSets:
     """The paper's: importance samples for all networks, judged on the surface (section 4.1)."""
-    samples = sampler.importance(PAPER_SAMPLES)
-    surface = sampler.surface(HELD_OUT)
-    return TrainingSets(samples, samples, sampler.near(HELD_OUT, SKIN), surface)
+    samples = sampler.importance(PAPER_COUNT)
+    surface = sampler.surface(HELD_OUT_COUNT)
+    return TrainingSets(samples, samples, sampler.near(HELD_OUT_COUNT, SKIN), surface)
