@@ -12,8 +12,8 @@ from nispcodec.decode.extract import Surface
 from nispcodec.network import Network
 
 # Area, in the normalised frame, below which a patch of one chart is a mistake of the field.
-SPECK_AREA = 2.5e-4
-SPECK_VERTICES = 4
+SPECK_AREA = 1.2e-4
+SPECK_VERTICES = 2
 ROUNDS = 3
 
 Charts = NDArray[np.int32]
