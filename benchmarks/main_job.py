@@ -23,7 +23,6 @@ from benchmarks.render import Scene, turntable
 from nispcodec.asset import TexturedMesh
 from nispcodec.decode.model import NispModel
 from nispcodec.format import unpack
-from nispcodec.mesh.charts import split_charts
 from nispcodec.mesh.load import load_mesh
 from nispcodec.metrics.compare import compare
 from nispcodec.metrics.pictures import compare_pictures
@@ -104,8 +103,7 @@ def cost(finished: Run) -> Record:
 def distortion(original: TexturedMesh, decoded: TexturedMesh, model: Path) -> Record:
     """Every metric of design.md section 6, of the decoded file as read back."""
     queried = NispModel(unpack(model.read_bytes()))
-    charts = split_charts(original).face_charts
-    report = compare(original, decoded, face_charts=charts, model=queried)
+    report = compare(original, decoded, model=queried)
     return {**report, "pictures": pictures(original, decoded)}
 
 

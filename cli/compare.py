@@ -60,9 +60,7 @@ def _compare_model(
     original: TexturedMesh, path: Path, resolution: int | None, how: dict[str, Any]
 ) -> Report:
     import nispcodec
-    from nispcodec.mesh.charts import split_charts
     from nispcodec.metrics.compare import compare
 
     model = nispcodec.load(path)
-    charts = split_charts(original).face_charts
-    return compare(original, model.to_mesh(resolution), face_charts=charts, model=model, **how)
+    return compare(original, model.to_mesh(resolution), model=model, **how)

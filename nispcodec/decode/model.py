@@ -50,6 +50,11 @@ class NispModel:
         """The chart that each point belongs to (n,) int32, into `document.charts`."""
         return self._charts(self._normalised(points, frame))
 
+    @property
+    def chart_materials(self) -> Integers:
+        """The material of each chart (k,) int32, into the document's materials."""
+        return self.document.charts.materials
+
     def uv(
         self, points: ArrayLike, frame: str = "world", charts: NDArray[np.integer] | None = None
     ) -> Floats:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from nispcodec.asset import TexturedMesh
-from nispcodec.metrics.charts import Chooser, Labels, chart_accuracy, model_labels
+from nispcodec.metrics.charts import Chooser, chart_accuracy
 from nispcodec.metrics.color import color_psnr
 from nispcodec.metrics.geometry import (
     Matches,
@@ -31,15 +31,13 @@ def compare(
     *,
     samples: int = 100_000,
     seed: int = 0,
-    face_charts: Labels | None = None,
     model: Chooser | None = None,
 ) -> Report:
     """Distortion of `decoded` against `original`, in the normalised frame of the original.
 
     `samples` points are drawn from each surface, uniformly by area; of those on the original only
-    the outer ones count. The chart accuracy is there when `face_charts` (m,), the chart of each of
-    the original's faces, and the `model` to ask are given; uv when the original has UVs. The same
-    seed gives the same numbers.
+    the outer ones count. The chart accuracy is there when the `model` to ask is given; uv when
+    the original has UVs. The same seed gives the same numbers.
     Raises MeshError when a mesh has no surface.
     """
     frame = frame_of(original)
@@ -58,8 +56,8 @@ def compare(
         report["uv"] = _uv(first, second, directions)
         report["parameterisation"] = _parameterisation(first, second)
     report["color"] = {"psnr": color_psnr(first, second, directions.values())}
-    if face_charts is not None and model is not None:
-        report["charts"] = _charts(first, seen, frame.to_world(seen.positions), face_charts, model)
+    if model is not None:
+        report["charts"] = _charts(first, seen, frame.to_world(seen.positions), model)
     return report
 
 
@@ -90,12 +88,9 @@ def _uv(original: Surface, decoded: Surface, directions: Directions) -> Group:
     return _with_larger({name: uv_summary(each) for name, each in errors.items() if len(each)})
 
 
-def _charts(
-    original: Surface, seen: SurfacePoints, world: Array, face_charts: Labels, model: Chooser
-) -> Group:
-    predicted = model.charts(world)
-    labels = model_labels(model, world, uv_at(original, seen), face_charts[seen.faces], predicted)
-    return {"accuracy": chart_accuracy(labels, predicted)}
+def _charts(original: Surface, seen: SurfacePoints, world: Array, model: Chooser) -> Group:
+    materials = original.mesh.face_materials[seen.faces]
+    return {"accuracy": chart_accuracy(model, world, uv_at(original, seen), materials)}
 
 
 def _parameterisation(original: Surface, decoded: Surface) -> Group:

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from nispcodec.errors import QueryError
-from nispcodec.metrics.charts import chart_accuracy, model_labels
+from nispcodec.metrics.charts import chart_accuracy
 from nispcodec.metrics.color import color_at
 from nispcodec.metrics.parameterisation import distortion_summary, triangle_distortions
 from nispcodec.metrics.pictures import compare_pictures
@@ -94,12 +94,10 @@ def test_component_that_touches_the_surface_is_not_spurious() -> None:
     assert spurious_components(joined(sphere(), bump), sphere())["count"] == 0
 
 
-def test_chart_accuracy_counts_matches() -> None:
-    assert chart_accuracy(np.array([0, 1, 2, 2]), np.array([0, 1, 1, 2])) == 0.75
-
-
 class Halves:
     """Chart 0 where x < border, 1 elsewhere; chart c has the UV (x, y + c), or none."""
+
+    chart_materials = np.array([0, 1])
 
     def __init__(self, border: float = 0.0, textured: bool = True) -> None:
         self.border, self.textured = border, textured
@@ -111,41 +109,39 @@ class Halves:
         return (points[:, :2] + np.stack([0 * charts, charts], axis=1)) * self.textured
 
 
-def accuracy(model: Halves, charts, uvs, points) -> float:
-    predicted = model.charts(points)
-    return chart_accuracy(model_labels(model, points, uvs, charts, predicted), predicted)
-
-
-@pytest.mark.parametrize("numbering", [(0, 1), (1, 0), (7, 3)])
-def test_chart_accuracy_whatever_the_numbering(numbering: tuple[int, int]) -> None:
+def halves_points():
+    """Points, and the side of x = 0 that they are on."""
     points = np.random.default_rng(0).uniform(-1, 1, (4000, 3))
-    side = (points[:, 0] >= 0).astype(int)
-    uvs = points[:, :2] + np.stack([0 * side, side], axis=1)
-    charts = np.asarray(numbering)[side]
-    assert accuracy(Halves(), charts, uvs, points) == 1
-    assert accuracy(Halves(border=0.5), charts, uvs, points) == pytest.approx(0.75, abs=0.03)
+    return points, (points[:, 0] >= 0).astype(int)
+
+
+@pytest.mark.parametrize(("border", "share"), [(0.0, 1.0), (0.5, 0.75)])
+def test_a_chart_is_right_when_its_uv_is(border: float, share: float) -> None:
+    points, side = halves_points()
+    uvs = Halves().uv(points, charts=side)
+    found = chart_accuracy(Halves(border), points, uvs, side)
+    assert found == pytest.approx(share, abs=0.03)
 
 
 def test_swapped_charts_are_all_wrong() -> None:
-    points = np.random.default_rng(0).uniform(-1, 1, (400, 3))
-    side = (points[:, 0] >= 0).astype(int)
-    swapped = points[:, :2] + np.stack([0 * side, 1 - side], axis=1)
-    assert accuracy(Halves(), side, swapped, points) == 0
+    points, side = halves_points()
+    swapped = Halves().uv(points, charts=1 - side)
+    assert chart_accuracy(Halves(), points, swapped, side) == 0
 
 
-def test_several_charts_may_share_a_number() -> None:
-    points = np.random.default_rng(0).uniform(-1, 1, (4000, 3))
-    side = (points[:, 0] >= 0).astype(int)
-    uvs = points[:, :2] + np.stack([0 * side, side], axis=1)
-    quarters = side + 2 * (points[:, 1] > 0)
-    assert accuracy(Halves(), quarters, uvs, points) == 1
-
-
-def test_without_uv_the_most_predicted_number_is_the_true_one() -> None:
-    points = np.random.default_rng(0).uniform(-1, 1, (4000, 3))
-    side = (points[:, 0] >= 0).astype(int)
+def test_without_uv_the_material_decides() -> None:
+    points, side = halves_points()
     model = Halves(border=0.1, textured=False)
-    assert accuracy(model, side, np.zeros((4000, 2)), points) == pytest.approx(0.95, abs=0.02)
+    found = chart_accuracy(model, points, np.zeros((4000, 2)), side)
+    assert found == pytest.approx(0.95, abs=0.02)
+
+
+def test_charts_that_agree_on_the_uv_are_both_right() -> None:
+    points, side = halves_points()
+    model = Halves(border=0.5)
+    model.uv = lambda points, *, charts: points[:, :2]
+    model.chart_materials = np.array([0, 0])
+    assert chart_accuracy(model, points, points[:, :2], 0 * side) == 1
 
 
 def test_psnr_of_known_error_and_of_none() -> None:
