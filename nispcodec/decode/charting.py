@@ -23,7 +23,7 @@ Pairs = NDArray[np.int64]
 def vertex_charts(network: Network, surface: Surface) -> Charts:
     """The chart of each vertex (n,), specks of wrong chart voted away."""
     charts = classify(network, surface.positions)
-    edges = unique_edges(surface.faces)
+    edges = _links(surface.faces)
     least = max(SPECK_VERTICES, round(SPECK_AREA / surface.cell**2))
     for _ in range(ROUNDS):
         before, charts = charts, _without_specks(charts, edges, least)
@@ -32,11 +32,10 @@ def vertex_charts(network: Network, surface: Surface) -> Charts:
     return charts
 
 
-def unique_edges(faces: NDArray[np.int32]) -> Pairs:
-    """The edges (e, 2) of the faces, each once, the lower vertex first."""
-    sides = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
-    keys = np.unique(sides.min(axis=1).astype(np.int64) << 32 | sides.max(axis=1))
-    return np.column_stack([keys >> 32, keys & 0xFFFFFFFF])
+def _links(faces: NDArray[np.int32]) -> Pairs:
+    """The edges (e, 2) of a closed surface, each once: its two faces run along it both ways."""
+    sides = np.stack([faces, np.roll(faces, -1, axis=1)], axis=2).reshape(-1, 2)
+    return sides[sides[:, 0] < sides[:, 1]].astype(np.int64)
 
 
 def _without_specks(charts: Charts, edges: Pairs, least: int) -> Charts:

@@ -23,6 +23,7 @@ OUTSIDE = 1.01
 # pieces are mostly scraps of real detail that the fit could not hold: only specks are dropped.
 STEEP, SMALL_SHARE = 1.7, 0.05
 FLAT, SPECK_AREA = 0.4, 2e-3
+SOME = 20_000
 
 Integers = NDArray[np.int32]
 
@@ -76,11 +77,28 @@ def spurious(network: Network, surface: Surface) -> tuple[NDArray[np.bool_], Int
     nearest = np.full(count, np.inf)
     np.minimum.at(nearest, labels, np.linalg.norm(surface.positions, axis=1))
     vertices = np.bincount(labels, minlength=count)
-    slopes = np.linalg.norm(gradient(network, surface.positions)[1], axis=1)
-    slope = np.bincount(labels, slopes, minlength=count) / vertices / np.median(slopes)
-    steep = (slope > STEEP) & (vertices < SMALL_SHARE * len(labels))
+    slope = _mean_slopes(network, surface, labels, vertices)
     flat = (slope < FLAT) & (vertices * surface.cell**2 < SPECK_AREA)
-    return (nearest > OUTSIDE) | steep | flat, labels
+    return (nearest > OUTSIDE) | (slope > STEEP) | flat, labels
+
+
+def _mean_slopes(
+    network: Network, surface: Surface, labels: Integers, vertices: NDArray[np.int64]
+) -> NDArray[np.float64]:
+    """Mean slope of the field on each small component, relative to the whole; 1 on large ones."""
+    small = vertices < SMALL_SHARE * len(labels)
+    chosen = np.flatnonzero(small[labels])
+    totals = np.bincount(labels[chosen], _slopes(network, surface, chosen), minlength=len(small))
+    some = np.arange(0, len(labels), 1 + len(labels) // SOME)
+    whole = np.median(_slopes(network, surface, some))
+    return np.where(small, totals / vertices / whole, 1.0)
+
+
+def _slopes(network: Network, surface: Surface, chosen: NDArray[np.int64]) -> NDArray[np.float32]:
+    slopes: NDArray[np.float32] = np.linalg.norm(
+        gradient(network, surface.positions[chosen])[1], axis=1
+    )
+    return slopes
 
 
 def without(surface: Surface, unwanted: NDArray[np.bool_], labels: Integers) -> Surface:

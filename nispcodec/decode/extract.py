@@ -58,15 +58,20 @@ def _surface_blocks(network: Network, root: int, levels: int, cell: float) -> Id
     """Integer coordinates (b, 3) of the blocks of BLOCK^3 cells that may hold surface.
 
     A block is halved and kept while the field at its centre is no larger than it may become over
-    half the block's diagonal.
+    half the block's diagonal. How fast it may grow is measured anew among the blocks of each level:
+    far from the surface a fitted field is steeper than near it.
     """
     blocks = _lattice(root)
-    bound = _steepness(network, _centres(blocks, cell * BLOCK * 2**levels))
     for level in range(levels, -1, -1):
         size = cell * BLOCK * 2**level
-        distance = np.abs(evaluate(network, _centres(blocks, size))[:, 0])
-        blocks = blocks[distance <= bound * size * np.sqrt(3) / 2]
+        centres = _centres(blocks, size)
+        if level == levels:
+            bound = _steepness(network, centres)
+        distance = np.abs(evaluate(network, centres)[:, 0])
+        near = distance <= bound * size * np.sqrt(3) / 2
+        blocks = blocks[near]
         if level:
+            bound = _steepness(network, centres[near])
             blocks = (2 * blocks[:, None] + CORNERS).reshape(-1, 3)
     return blocks
 
@@ -81,9 +86,9 @@ def _lattice(count: int) -> Ids:
 
 
 def _steepness(network: Network, points: Floats) -> float:
-    """A bound on how fast the field changes: an SDF has slope 1, a fitted one only nearly."""
+    """A bound on the field's slope round the points: 1 for an SDF, for a fitted one only nearly."""
     slopes = np.linalg.norm(gradient(network, points)[1], axis=1)
-    return float(1.25 * max(1.0, np.percentile(slopes, 99)))
+    return float(1.25 * np.percentile(slopes, 99, method="higher")) if len(slopes) else 1.0
 
 
 def _block_values(network: Network, blocks: Ids, across: int, cell: float) -> Floats:
