@@ -27,7 +27,7 @@ IMAGE_FORMATS = ("webp", "avif", "jpeg")
 @click.option(
     "--seed", type=click.IntRange(0), default=0, show_default=True, help="Of everything random."
 )
-@click.option("--device", default="auto", show_default=True, help="auto, cpu, cuda, mps.")
+@click.option("--device", default="auto", show_default=True, help="auto, cpu, cuda.")
 @click.option("--threads", type=click.IntRange(0), default=0, help="0, the default: all cores.")
 @click.option("--unwrap", is_flag=True, help="Make new UVs with xatlas (drops the textures).")
 @click.option("--texture-format", type=click.Choice(IMAGE_FORMATS), help="Re-encode the images.")

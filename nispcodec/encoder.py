@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from nispcodec.mesh.training import TrainingSets
 
 PRESETS = ("balanced", "paper")
-GAP = 0.02
+GAP = 0.05
 """Charts further apart than this (normalised frame) may share a number; not in the paper preset."""
 
 NOTABLE_SHEETS = 0.02

@@ -9,6 +9,7 @@ from contextlib import contextmanager
 
 import torch
 
+from nispcodec.errors import FitError
 from nispcodec.fit.task import Task
 from nispcodec.fit.train import Cancelled, train
 from nispcodec.network import Network
@@ -48,10 +49,17 @@ def fit_networks(
 
 
 def resolve_device(wanted: str) -> str:
-    """The torch device for "auto": CUDA when there is one, else the CPU."""
-    if wanted != "auto":
-        return wanted
-    return "cuda" if torch.cuda.is_available() else "cpu"
+    """The torch device for "auto", "cpu", "cuda" or "cuda:1"; auto is CUDA when there is one.
+
+    Raises FitError for a device that is not there.
+    """
+    cuda = torch.cuda.is_available()
+    if wanted == "auto":
+        return "cuda" if cuda else "cpu"
+    if wanted != "cpu" and not (cuda and wanted.partition(":")[0] == "cuda"):
+        found = "cpu, cuda" if cuda else "cpu alone"
+        raise FitError(f"device: expected one that torch finds here ({found}), found {wanted!r}")
+    return wanted
 
 
 @contextmanager

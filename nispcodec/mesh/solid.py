@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from nispcodec.asset import FloatArray
+from nispcodec.errors import MeshError
 from nispcodec.mesh.charts import connected_faces, row_ids
 
 OFFSET = 2e-3
@@ -56,7 +57,7 @@ class Solid:
 
 
 def build_solid(corners: Triangles) -> Solid:
-    """Sort the faces (m, 3, 3), normalised frame."""
+    """Sort the faces (m, 3, 3), normalised frame. Raises MeshError when none can be seen."""
     open_faces = _open_bodies(corners)
     bodies = corners[~open_faces]
     winding = Winding(bodies)
@@ -65,6 +66,8 @@ def build_solid(corners: Triangles) -> Solid:
     total = area(corners).sum()
     sheets = np.flatnonzero(open_faces)
     all_pieces = np.concatenate([pieces[~hidden], corners[sheets]])
+    if not len(all_pieces):
+        raise MeshError(f"expected faces to be seen from outside, found {len(corners)} hidden ones")
     is_sheet = np.concatenate([kind[~hidden] == _SHEET, np.ones(len(sheets), dtype=bool)])
     return Solid(
         pieces=all_pieces,

@@ -14,7 +14,7 @@ from torch import Tensor
 from nispcodec.errors import FitError
 from nispcodec.fit.losses import chart_error, chart_loss, distance_error, relative_distance_loss
 from nispcodec.fit.module import Module
-from nispcodec.fit.parallel import fit_networks
+from nispcodec.fit.parallel import fit_networks, resolve_device
 from nispcodec.fit.soap import Soap
 from nispcodec.fit.task import Batch, Schedule, Task
 from nispcodec.fit.train import train
@@ -123,6 +123,14 @@ def test_an_interrupt_stops_every_network() -> None:
         fit_networks([sdf_task(), chart_task()], 0, "cpu", 2, interrupted)
     assert max(steps.values()) < 300
     assert torch.get_num_threads() >= 1
+
+
+@pytest.mark.parametrize("device", ["gpu", "mps", "cuda:99x", ""])
+def test_a_device_that_is_not_there_is_an_error(device: str) -> None:
+    if torch.cuda.is_available() and device.startswith("cuda"):
+        pytest.skip("this machine has CUDA")
+    with pytest.raises(FitError, match="device"):
+        resolve_device(device)
 
 
 def test_soap_finds_the_minimum_of_a_badly_scaled_quadratic() -> None:
