@@ -37,6 +37,13 @@ class ExtractionReport:
     dropped: int
     dropped_faces: int
 
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """What the user of the mesh should know: a sentence when something was dropped."""
+        if not self.dropped:
+            return ()
+        return (f"{self.dropped} spurious component(s), {self.dropped_faces} faces, dropped",)
+
 
 def without_noise(
     network: Network, surface: Surface, keep: bool = False

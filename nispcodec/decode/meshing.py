@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -30,6 +32,7 @@ def textured_mesh(
 ) -> tuple[TexturedMesh, ExtractionReport]:
     """The document's surface in the world frame, textured, and a report on its extraction.
 
+    The mesh's warnings tell what was dropped.
     resolution: cells along the cube's edge, see `default_resolution`; faces: the most triangles
     that the mesh may have, seams included; error: as few triangles as keep the mean distance to the
     field's surface below it (normalised frame); keep_spurious: do not drop noise of the field.
@@ -38,7 +41,8 @@ def textured_mesh(
     if error is not None:
         surface = simplest(document.sdf, surface, error)
     cut, charts = _cut(document, surface) if faces is None else _fitted(document, surface, faces)
-    return _dressed(document, cut, charts), report
+    mesh = _dressed(document, cut, charts)
+    return replace(mesh, warnings=report.warnings), report
 
 
 def default_resolution(document: Document) -> int:

@@ -109,7 +109,7 @@ class NispModel:
         the asset has sheets thinner than that resolves. `faces`: the most triangles to return; the
         surface is simplified to fit. `error`: as few triangles as keep the mean distance to the
         field's surface below it, normalised frame. `keep_spurious` keeps the components that are
-        recognised as noise of the field.
+        recognised as noise of the field; a warning of the mesh counts those that were dropped.
         """
         from nispcodec.decode.meshing import textured_mesh
 

@@ -1,0 +1,57 @@
+"""The options of `nisp decode`, each seen in the file that it writes."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+import trimesh
+
+from nispcodec.mesh.load import load_mesh
+from tests.cli.conftest import nisp
+
+
+def decoded(model: Path, out: Path, *options: object) -> Path:
+    result = nisp("decode", model, "-o", out, *options)
+    assert result.exit_code == 0, result.output
+    return out
+
+
+def test_faces(model: Path, tmp_path: Path) -> None:
+    out = decoded(model, tmp_path / "out.glb", "--resolution", 48, "--faces", 500)
+    assert 200 < len(load_mesh(out).faces) <= 500
+
+
+def test_target_error(model: Path, tmp_path: Path) -> None:
+    options = ("--resolution", 48, "--target-error")
+    fine = load_mesh(decoded(model, tmp_path / "fine.glb", *options, 1e-6))
+    coarse = load_mesh(decoded(model, tmp_path / "coarse.glb", *options, 1e-2))
+    assert len(coarse.faces) < len(fine.faces)
+
+
+def test_colors(model: Path, tmp_path: Path) -> None:
+    out = decoded(model, tmp_path / "out.ply", "--resolution", 24, "--colors")
+    colors = np.asarray(trimesh.load(out).visual.vertex_colors)
+    assert len(np.unique(colors, axis=0)) > 10
+
+
+def test_rebake(model: Path, tmp_path: Path) -> None:
+    pytest.importorskip("xatlas", reason="the extra `unwrap` is not installed")
+    options = ("--resolution", 32, "--faces", 300, "--rebake", 64)
+    mesh = load_mesh(decoded(model, tmp_path / "out.glb", *options))
+    assert len(mesh.textures) == len(mesh.materials) == 1
+    assert mesh.has_uv.all()
+    assert mesh.uvs.min() >= 0
+    assert mesh.uvs.max() <= 1
+
+
+def test_contradictions_are_refused(model: Path, tmp_path: Path) -> None:
+    for options in (("--colors", "--rebake"), ("--faces", 2), ("--target-error", 0)):
+        result = nisp("decode", model, "-o", tmp_path / "out.glb", *options)
+        assert result.exit_code == 2
+        assert "Usage:" in result.stderr
+    result = nisp("decode", model, "-o", tmp_path / "out.stl", "--resolution", 16, "--colors")
+    assert result.exit_code == 2
+    assert "STL holds no colours" in result.stderr
+    assert not list(tmp_path.glob("out.*"))
