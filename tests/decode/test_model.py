@@ -186,6 +186,14 @@ def test_mesh_of_charts_without_uv() -> None:
     assert np.array_equal(mesh.has_uv, mesh.face_materials == 0)
 
 
+def test_a_field_without_surface_gives_an_empty_mesh() -> None:
+    everywhere_outside = tiny.relu_network([(np.eye(3), np.zeros(3)), (np.zeros((1, 3)), [1.0])])
+    for options in ({}, {"faces": 100}, {"error": 1e-3}):
+        mesh = NispModel(tiny.document(everywhere_outside)).to_mesh(16, **options)
+        assert mesh.faces.shape == (0, 3)
+        assert mesh.positions.shape == (0, 3)
+
+
 def test_geometry_only() -> None:
     plain = tiny.document()
     table = ChartTable(np.zeros(1, np.int32), np.zeros(1, np.bool_))

@@ -197,6 +197,17 @@ def test_our_own_reader_finds_everything_again(
         assert (wood.alpha_mode, wood.alpha_cutoff) == ("mask", 0.3)
 
 
+@pytest.mark.parametrize("suffix", [".glb", ".obj", ".ply"])
+@pytest.mark.parametrize(("offset", "scale"), [(1e7, 1.0), (0.0, 1e-4), (-3e5, 1e3)])
+def test_far_and_tiny_meshes_keep_their_shape(
+    mesh: TexturedMesh, tmp_path: Path, suffix: str, offset: float, scale: float
+) -> None:
+    moved = replace(mesh, positions=mesh.positions * scale + offset)
+    again = load_mesh(write_mesh(moved, tmp_path / f"out{suffix}")[-1])
+    placed = (again.positions - offset) / scale
+    assert triangles(placed, again.faces) == triangles(mesh.positions, mesh.faces)
+
+
 def test_obj_text(mesh: TexturedMesh) -> None:
     files = obj_files(mesh, "out")
     assert set(files) == {"out.obj", "out.mtl", "out_a_b.png", "out_2_a_b.png"}

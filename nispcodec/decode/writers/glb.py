@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from nispcodec.asset import Material, Texture, TexturedMesh, TextureMap
 from nispcodec.decode.writers.colors import Colors
-from nispcodec.decode.writers.vertices import split_vertices, vertex_normals
+from nispcodec.decode.writers.vertices import origin, split_vertices, vertex_normals
 from nispcodec.texture import srgb_to_linear
 
 Json = dict[str, Any]
@@ -28,6 +28,7 @@ WEBP = "EXT_texture_webp"
 def glb_bytes(mesh: TexturedMesh, colors: Colors | None = None) -> bytes:
     """The mesh as the bytes of a GLB file: V is flipped to glTF's top-left origin.
 
+    A mesh far from the origin gets its place from its node, not from its float32 coordinates.
     Colours (n, 4), sRGB-encoded, become COLOR_0 in linear light.
     """
     return _Builder(colors).build(mesh)
@@ -41,15 +42,20 @@ class _Builder:
         self.buffer = bytearray()
         self.tree: Json = {"asset": {"version": "2.0", "generator": "nispcodec"}}
         self.images: dict[int, int] = {}
+        self.origin = np.zeros(3)
 
     def build(self, mesh: TexturedMesh) -> bytes:
+        self.origin = origin(mesh)
         normals = vertex_normals(mesh)
         primitives = [
             self.primitive(mesh, faces, normals, material, has_uv)
             for material, has_uv, faces in _groups(mesh)
         ]
         self.tree["scene"] = self.add("scenes", {"nodes": [0]})
-        self.add("nodes", {"mesh": 0, "name": mesh.name})
+        node: Json = {"mesh": 0, "name": mesh.name}
+        if self.origin.any():
+            node["translation"] = self.origin.tolist()
+        self.add("nodes", node)
         self.add("meshes", {"primitives": primitives, "name": mesh.name})
         self.pad(b"\0")
         self.tree["buffers"] = [{"byteLength": len(self.buffer)}]
@@ -91,11 +97,10 @@ class _Builder:
         has_uv: bool,
     ) -> Json:
         vertices = split_vertices(mesh, faces)
-        positions = self.accessor(vertices.positions, "VEC3", ARRAY_BUFFER)
-        self.tree["accessors"][positions] |= {
-            "min": vertices.positions.min(axis=0).tolist(),
-            "max": vertices.positions.max(axis=0).tolist(),
-        }
+        near = (vertices.positions - self.origin).astype(np.float32)
+        positions = self.accessor(near, "VEC3", ARRAY_BUFFER)
+        limits = {"min": near.min(axis=0).tolist(), "max": near.max(axis=0).tolist()}
+        self.tree["accessors"][positions] |= limits
         vertex_normal = self.accessor(normals[vertices.sources], "VEC3", ARRAY_BUFFER)
         attributes = {"POSITION": positions, "NORMAL": vertex_normal}
         if has_uv:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 
 import numpy as np
@@ -42,8 +43,8 @@ def obj_files(mesh: TexturedMesh, stem: str, colors: Colors | None = None) -> di
 
 def _obj(mesh: TexturedMesh, library: str, names: list[str]) -> str:
     parts = [f"mtllib {library}\no {_plain(mesh.name)}\n"]
-    parts.append(_rows("v %.9g %.9g %.9g\n", mesh.positions))
-    parts.append(_rows("vt %.9g %.9g\n", mesh.uvs))
+    parts.append(_rows(f"v {_decimals(mesh)}\n", mesh.positions))
+    parts.append(_rows("vt %.7g %.7g\n", mesh.uvs))
     for material in np.unique(mesh.face_materials).tolist():
         parts.append(f"usemtl {names[material]}\n")
         chosen = mesh.face_materials == material
@@ -58,9 +59,15 @@ def _colored_obj(mesh: TexturedMesh, colors: Colors) -> str:
     vertices = np.hstack([mesh.positions, colors[:, :3]])
     return (
         f"o {_plain(mesh.name)}\n"
-        + _rows("v %.9g %.9g %.9g %.4g %.4g %.4g\n", vertices)
+        + _rows(f"v {_decimals(mesh)} %.4g %.4g %.4g\n", vertices)
         + _rows("f %d %d %d\n", mesh.faces + 1)
     )
+
+
+def _decimals(mesh: TexturedMesh) -> str:
+    """The pattern of a position: seven digits of the mesh's extent, wherever it lies."""
+    extent = float(np.ptp(mesh.positions, axis=0).max()) or 1.0
+    return " ".join([f"%.{max(0, 7 - math.floor(math.log10(extent)))}f"] * 3)
 
 
 def _rows(pattern: str, values: NDArray[np.generic]) -> str:

@@ -6,16 +6,18 @@ import numpy as np
 
 from nispcodec.asset import TexturedMesh
 from nispcodec.decode.writers.colors import Colors
-from nispcodec.decode.writers.vertices import split_vertices
+from nispcodec.decode.writers.vertices import origin, split_vertices
 
 
 def ply_bytes(mesh: TexturedMesh, colors: Colors | None = None) -> bytes:
     """The mesh as the bytes of a binary little-endian PLY file.
 
     A seam's vertices are doubled for their UVs s, t; colours (n, 4) become red, green, blue, alpha.
+    Coordinates take eight bytes when the mesh is far from the origin.
     """
     vertices = split_vertices(mesh, np.arange(len(mesh.faces)))
-    fields = [(name, "<f4") for name in ("x", "y", "z")]
+    kind = "<f8" if origin(mesh).any() else "<f4"
+    fields = [(name, kind) for name in ("x", "y", "z")]
     values = list(vertices.positions.T)
     if colors is None:
         fields += [("s", "<f4"), ("t", "<f4")]
@@ -32,7 +34,7 @@ def ply_bytes(mesh: TexturedMesh, colors: Colors | None = None) -> bytes:
 
 
 def _header(fields: list[tuple[str, str]], vertices: int, faces: int) -> bytes:
-    types = {"<f4": "float", "u1": "uchar"}
+    types = {"<f4": "float", "<f8": "double", "u1": "uchar"}
     lines = [
         "ply",
         "format binary_little_endian 1.0",
