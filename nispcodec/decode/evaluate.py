@@ -11,6 +11,7 @@ import os
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from functools import cache
+from threading import Lock
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,6 +25,7 @@ Charts = NDArray[np.int32]
 Integers = NDArray[np.integer]
 
 BLOCK = 2048
+_ALONE = Lock()
 
 
 def evaluate(network: Network, points: Floats, charts: Integers | None = None) -> Floats:
@@ -191,8 +193,9 @@ def _in_blocks(run: Callable[[slice], None], count: int) -> None:
         for part in blocks:
             run(part)
         return
-    # One BLAS thread a worker: BLAS's own threads would fight with the pool for the same cores.
-    with _blas().limit(limits=1, user_api="blas"), ThreadPoolExecutor(_cores()) as pool:
+    # One BLAS thread a worker: BLAS's own threads would fight with the pool for the same cores. The
+    # limit is the whole process's, so that two evaluations at once would undo it for each other.
+    with _ALONE, _blas().limit(limits=1, user_api="blas"), ThreadPoolExecutor(_cores()) as pool:
         list(pool.map(run, blocks))
 
 

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import math
+from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import pytest
+from threadpoolctl import threadpool_info
 
 from nispcodec.decode.evaluate import BLOCK, evaluate, gradient
 from nispcodec.errors import QueryError
@@ -100,6 +102,17 @@ def test_gradient_is_the_slope_of_the_values(activation: str, encoding: str, out
         error = np.abs(rise[:, 0] / (2 * step) - slopes[:, axis])
         # A ReLU's kink between the two samples spoils the difference quotient, not the slope.
         assert np.quantile(error, 0.9) < 5e-3
+
+
+def test_threads_may_ask_at_once_and_blas_keeps_its_threads() -> None:
+    network = tiny.random_network(SPECS["siren"])
+    points = np.random.default_rng(4).uniform(-1, 1, (5 * BLOCK, 3)).astype(np.float32)
+    expected = evaluate(network, points)
+    before = [library["num_threads"] for library in threadpool_info()]
+    with ThreadPoolExecutor(8) as pool:
+        answers = list(pool.map(lambda _: evaluate(network, points), range(16)))
+    assert all(np.array_equal(answer, expected) for answer in answers)
+    assert [library["num_threads"] for library in threadpool_info()] == before
 
 
 def test_gradient_of_no_points() -> None:
