@@ -32,7 +32,8 @@ DOUBT = 0.05
 ACCURACY = 1.5
 
 OPENNESS = 0.25
-GAP = 5e-3
+UNDECIDED = 0.2
+GAP = 0.02
 
 Triangles = NDArray[np.float64]
 
@@ -158,13 +159,14 @@ def _point_kind(winding: Winding, pieces: Triangles, weights: FloatArray) -> NDA
 def _open_bodies(corners: Triangles) -> NDArray[np.bool_]:
     """Faces of bodies with large openings that no other body plugs.
 
-    Closing such an opening, as the winding number does, would draw a membrane that nobody
-    modelled. Openings within `GAP` of the mesh (flat cards, panels) need no such care.
+    Closing such an opening, as the winding number does where it passes 1/2, would draw a membrane
+    that nobody modelled. Openings within `GAP` of the mesh (flat cards, panels) need no such care.
     """
     vertices = row_ids(corners.reshape(-1, 3)).reshape(-1, 3)
     body = connected_faces(vertices)
     opening, centre, owner = _openings(corners, vertices, body)
-    exposed = (np.abs(Winding(corners).at(centre)) < 0.8) & (_gap(corners, centre) > GAP)
+    undecided = np.abs(np.abs(Winding(corners).at(centre)) - 0.5) < UNDECIDED
+    exposed = undecided & (_gap(corners, centre) > GAP)
     count = int(body.max()) + 1
     open_area = np.bincount(owner[exposed], weights=opening[exposed], minlength=count)
     openness = open_area / np.maximum(np.bincount(body, weights=area(corners)), 1e-30)
