@@ -32,7 +32,25 @@ def simplified(surface: Surface, faces: int) -> Surface:
     noise = np.random.default_rng(0).normal(0, ROUGHNESS * surface.cell, surface.positions.shape)
     rough = surface.positions + noise.astype(np.float32)
     positions, corners = simplify(rough, surface.faces, target_count=faces, agg=AGGRESSIVENESS)
-    return Surface(positions.astype(np.float32), corners.astype(np.int32), surface.cell)
+    return without_fins(
+        Surface(positions.astype(np.float32), corners.astype(np.int32), surface.cell)
+    )
+
+
+def without_fins(surface: Surface) -> Surface:
+    """The surface without pairs of faces back to back, to which thin parts collapse."""
+    corners = np.sort(surface.faces, axis=1)
+    _, first, twin, count = np.unique(
+        corners, axis=0, return_index=True, return_inverse=True, return_counts=True
+    )
+    twin = twin.ravel()
+    rising = (surface.faces < np.roll(surface.faces, -1, axis=1)).sum(axis=1)
+    agreeing = np.bincount(twin, rising == rising[first[twin]], minlength=len(first))
+    faces = surface.faces[~((count == 2) & (agreeing == 1))[twin]]
+    used, renumbered = np.unique(faces, return_inverse=True)
+    return Surface(
+        surface.positions[used], renumbered.reshape(-1, 3).astype(np.int32), surface.cell
+    )
 
 
 def simplest(network: Network, surface: Surface, error: float) -> Surface:
