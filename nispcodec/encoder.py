@@ -20,8 +20,8 @@ if TYPE_CHECKING:
     from nispcodec.mesh.training import TrainingSets
 
 PRESETS = ("balanced", "paper")
-GAP = 0.05
-"""Charts further apart than this (normalised frame) may share a number; not in the paper preset."""
+GAP = 0.1
+"""Charts some times further apart than this (normalised frame) share numbers; not in `paper`."""
 
 NOTABLE_SHEETS = 0.02
 """From this share of the area on, sheets are worth the finer extraction that they need."""

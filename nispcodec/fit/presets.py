@@ -54,7 +54,7 @@ def balanced_tasks(charts: int, patches: int, sets: TrainingSets) -> list[Task]:
     )
     return _tasks(
         sets,
-        sdf=(sdf, relative_distance_loss, Schedule(SDF_STEPS)),
+        sdf=(sdf, relative_distance_loss, Schedule(SDF_STEPS, rate=5e-4)),
         chart=(chart, chart_loss, Schedule(CHART_STEPS, batch=1024)),
         uv=(uv, uv_loss, Schedule(UV_STEPS)),
     )

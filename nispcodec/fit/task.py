@@ -52,7 +52,7 @@ class Schedule:
 
     steps: int
     batch: int = 2048
-    rate: float = 5e-4
+    rate: float = 1e-3
     optimiser: str = "soap"
     half: bool = True
 

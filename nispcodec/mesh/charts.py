@@ -82,15 +82,30 @@ def colored(neighbours: list[set[int]], kinds: list[Kind]) -> tuple[list[int], l
 def _neighbours(
     count: int, points: FloatArray, charts: NDArray[np.integer], gap: float
 ) -> list[set[int]]:
-    """For each of `count` charts, the others that come closer than `gap`."""
-    pairs = cKDTree(points).query_pairs(gap, output_type="ndarray")
-    touching = np.unique(np.sort(charts[pairs], axis=1), axis=0)
+    """For each of `count` charts, the others that come closer than `gap`.
+
+    Told by cells of that size and their neighbours, so that memory is bounded by the points: some
+    charts up to a few times as far apart count as well.
+    """
+    cells, cell = np.unique(np.floor(points / gap), axis=0, return_inverse=True)
+    shape = (len(cells), count)
+    there = coo_matrix((np.ones(len(cell), dtype=bool), (cell.reshape(-1), charts)), shape=shape)
+    adjacent = (there.T @ (_near_cells(cells) @ there)).tocoo()
     neighbours: list[set[int]] = [set() for _ in range(count)]
-    for one, other in touching.tolist():
+    for one, other in zip(adjacent.row.tolist(), adjacent.col.tolist(), strict=True):
         if one != other:
             neighbours[one].add(other)
-            neighbours[other].add(one)
     return neighbours
+
+
+def _near_cells(cells: FloatArray) -> coo_matrix:
+    """(c, c) bool: cells (c, 3) of integers that touch, themselves included."""
+    pairs = cKDTree(cells).query_pairs(1.0, p=np.inf, output_type="ndarray")
+    own = np.arange(len(cells))
+    rows = np.concatenate([pairs[:, 0], pairs[:, 1], own])
+    columns = np.concatenate([pairs[:, 1], pairs[:, 0], own])
+    size = (len(cells), len(cells))
+    return coo_matrix((np.ones(len(rows), dtype=bool), (rows, columns)), shape=size).tocsr()
 
 
 def row_ids(rows: NDArray[np.number[Any]]) -> NDArray[np.int64]:
