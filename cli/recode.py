@@ -61,5 +61,5 @@ def _without_textures(document: Document) -> Document:
 def _with_textures(document: Document, kind: str, quality: int) -> Document:
     from nispcodec.texture import reencode
 
-    images = tuple(reencode(texture, kind, quality) for texture in document.textures)
+    images = reencode(document.textures, kind, quality)
     return replace(document, textures=images)

@@ -1,8 +1,8 @@
 """Neural codec for textured 3D assets.
 
-    model = nispcodec.encode(mesh)          a TexturedMesh to a NispModel (needs torch)
-    nispcodec.save(model, "asset.nisp")
-    model = nispcodec.load("asset.nisp")    queries and meshes need numpy alone
+model = nispcodec.encode(mesh)          a TexturedMesh to a NispModel (needs torch)
+nispcodec.save(model, "asset.nisp")
+model = nispcodec.load("asset.nisp")    queries and meshes need numpy alone
 """
 
 from __future__ import annotations

@@ -92,8 +92,7 @@ def _appearance(
     if config.texture_format is None:
         return mesh.materials, mesh.textures
     quality = config.texture_quality
-    images = (reencode(image, config.texture_format, quality) for image in mesh.textures)
-    return mesh.materials, tuple(images)
+    return mesh.materials, reencode(mesh.textures, config.texture_format, quality)
 
 
 def _sample(

@@ -8,6 +8,9 @@ from __future__ import annotations
 import io
 import struct
 import warnings
+from collections.abc import Iterable
+from dataclasses import replace
+from itertools import count
 from pathlib import PurePath
 from typing import TYPE_CHECKING
 
@@ -47,11 +50,22 @@ def decode_image(texture: Texture) -> Image:
         raise MeshError(f"texture {texture.name}: expected an image, found: {why}") from why
 
 
-def reencode(texture: Texture, kind: str, quality: int) -> Texture:
-    """The same image as another file: `kind` "webp", "avif" or "jpeg", `quality` 1 to 100.
+def reencode(textures: Iterable[Texture], kind: str, quality: int) -> tuple[Texture, ...]:
+    """The same images as other files: `kind` "webp", "avif" or "jpeg", `quality` 1 to 100.
 
-    JPEG holds no transparency: an image that has some stays as it is.
+    JPEG holds no transparency: images that have some stay as they are. Names stay different.
     """
+    again: list[Texture] = []
+    for texture in textures:
+        fresh, taken = _reencoded(texture, kind, quality), {other.name for other in again}
+        path, tries = PurePath(fresh.name), count(2)
+        while fresh.name in taken:
+            fresh = replace(fresh, name=f"{path.stem}-{next(tries)}{path.suffix}")
+        again.append(fresh)
+    return tuple(again)
+
+
+def _reencoded(texture: Texture, kind: str, quality: int) -> Texture:
     import PIL.Image
 
     pixels = np.rint(decode_image(texture) * 255).astype(np.uint8)

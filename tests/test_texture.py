@@ -12,6 +12,7 @@ from nispcodec.texture import (
     base_color,
     decode_image,
     linear_to_srgb,
+    reencode,
     sample_texture,
     srgb_to_linear,
 )
@@ -132,3 +133,18 @@ def test_base_color_multiplies_in_linear_light() -> None:
     color = base_color(material, image, np.zeros((1, 2)))
     expected = linear_to_srgb(srgb_to_linear(image[0]) * np.float32(0.5))[0, :3]
     np.testing.assert_allclose(color[0], [*expected, 0.4], atol=1e-6)
+
+
+def test_reencoded_images_keep_their_pixels_and_different_names() -> None:
+    image = PIL.Image.fromarray(np.full((8, 8, 3), (10, 200, 90), np.uint8))
+    twice = [encoded(image), encoded(image, "JPEG")]
+    for kind in ("webp", "avif", "jpeg"):
+        again = reencode(twice, kind, 90)
+        assert len({texture.name for texture in again}) == 2
+        assert {texture.mime for texture in again} == {f"image/{kind}"}
+        assert decode_image(again[0]) == pytest.approx(decode_image(twice[0]), abs=0.05)
+
+
+def test_jpeg_leaves_transparent_images_alone() -> None:
+    clear = encoded(PIL.Image.new("RGBA", (4, 4), (1, 2, 3, 100)))
+    assert reencode([clear], "jpeg", 90) == (clear,)

@@ -15,7 +15,7 @@ from threading import Lock
 
 import numpy as np
 from numpy.typing import NDArray
-from threadpoolctl import ThreadpoolController  # type: ignore[import-untyped]
+from threadpoolctl import ThreadpoolController
 
 from nispcodec.errors import QueryError
 from nispcodec.network import Network, NetworkSpec

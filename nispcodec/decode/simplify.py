@@ -26,7 +26,7 @@ def simplified(surface: Surface, faces: int) -> Surface:
     """
     if len(surface.faces) <= faces:
         return surface
-    from fast_simplification import simplify  # type: ignore[import-untyped]
+    from fast_simplification import simplify
 
     # On exactly flat parts all quadrics are 0 and collapses get stuck: make them a little rough.
     noise = np.random.default_rng(0).normal(0, ROUGHNESS * surface.cell, surface.positions.shape)

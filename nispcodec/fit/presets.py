@@ -19,9 +19,9 @@ MANY_PATCHES = 100
 
 PAPER_HIDDEN = (64,) * 8
 PAPER_LEVELS = 5
-SDF_STEPS = 9_000
-CHART_STEPS = 6_000
-UV_STEPS = 6_000
+SDF_STEPS = 8_500
+CHART_STEPS = 5_000
+UV_STEPS = 5_500
 PAPER_STEPS = 60_000
 """What some twenty minutes on two cores allow of the published 2000 epochs of 10^6 samples."""
 
