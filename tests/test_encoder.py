@@ -19,8 +19,8 @@ from tests.mesh.shapes import box_asset, cube, soup
 
 @pytest.fixture(autouse=True)
 def short(monkeypatch: pytest.MonkeyPatch) -> None:
-    for name in ("SDF_STEPS", "CHART_STEPS", "UV_STEPS", "PAPER_STEPS"):
-        monkeypatch.setattr(presets, name, 60)
+    monkeypatch.setattr(presets, "STEPS", dict.fromkeys(presets.STEPS, 60))
+    monkeypatch.setattr(presets, "PAPER_STEPS", 60)
     for name in ("NEAR", "TIGHT", "CUBE", "SKIN", "HELD_OUT", "PAPER"):
         monkeypatch.setattr(training, f"{name}_COUNT", 3000)
 

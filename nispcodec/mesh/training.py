@@ -12,9 +12,9 @@ TIGHT = 1 / 250
 SKIN = 3e-3
 """Mean distance of the samples for charts and UVs: decisions far from the surface are wasted."""
 
-NEAR_COUNT = 200_000
-TIGHT_COUNT = 120_000
-CUBE_COUNT = 80_000
+NEAR_COUNT = 100_000
+TIGHT_COUNT = 240_000
+CUBE_COUNT = 60_000
 SKIN_COUNT = 250_000
 HELD_OUT_COUNT = 20_000
 PAPER_COUNT = 1_000_000
