@@ -17,7 +17,7 @@ import click
 
 import nispcodec
 from benchmarks.machine import commit, machine, versions
-from nispcodec.fit.presets import PAPER_STEPS
+from nispcodec.fit import presets
 from nispcodec.format import pack
 from nispcodec.mesh.load import load_mesh
 from nispcodec.output import write_atomic
@@ -49,15 +49,16 @@ class Curve:
             known.append((update.step, round(time.monotonic() - self.started, 1), update.error))
 
 
-def measure(source: Path) -> dict[str, Any]:
+def measure(source: Path, steps: int) -> dict[str, Any]:
     """Encode with the preset; no textures, as sizes are of networks and tables."""
+    presets.PAPER_STEPS = steps
     curve = Curve()
     config = nispcodec.EncodeConfig(preset="paper", textures=False)
     model = nispcodec.encode(load_mesh(source), config, curve)
     return {
         "asset": source.stem,
-        "steps": PAPER_STEPS,
-        "samples_per_network": PAPER_STEPS * 2048,
+        "steps": steps,
+        "samples_per_network": steps * 2048,
         "seconds": round(time.monotonic() - curve.started, 1),
         "bytes": len(pack(model.document)),
         "measured": dict(model.document.info),
@@ -69,9 +70,15 @@ def measure(source: Path) -> dict[str, Any]:
 @click.command()
 @click.argument("source", type=click.Path(path_type=Path, exists=True))
 @click.option("-o", "--output", type=click.Path(path_type=Path), default=RESULTS, show_default=True)
-def main(source: Path, output: Path) -> None:
+@click.option("--steps", type=click.IntRange(1), default=presets.PAPER_STEPS, show_default=True)
+def main(source: Path, output: Path, steps: int) -> None:
     """Run the preset on SOURCE and write the JSON."""
-    result = {"commit": commit(), "machine": machine(), "versions": versions(), **measure(source)}
+    result = {
+        "commit": commit(),
+        "machine": machine(),
+        "versions": versions(),
+        **measure(source, steps),
+    }
     output.parent.mkdir(parents=True, exist_ok=True)
     write_atomic(output, json.dumps(result, indent=1).encode() + b"\n")
     print(json.dumps({key: value for key, value in result.items() if key != "curve"}, indent=1))

@@ -70,6 +70,11 @@ class Document:
     extra: Mapping[str, bytes] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
+        self._check_tables()
+        self._check_maps()
+        self._check_networks()
+
+    def _check_tables(self) -> None:
         k = len(self.charts)
         _demand("charts", 1 <= k <= MAX_CHARTS, f"1 to {MAX_CHARTS}", k)
         _demand("frame", self.frame.radius > 0, "a positive radius", self.frame.radius)
@@ -81,6 +86,8 @@ class Document:
             f"0 to {len(self.materials) - 1}",
             f"{materials.min()} to {materials.max()}",
         )
+
+    def _check_maps(self) -> None:
         for material in self.materials:
             for slot, used in material.maps.items():
                 _demand(
@@ -89,6 +96,9 @@ class Document:
                     f"a texture below {len(self.textures)}",
                     used.texture,
                 )
+
+    def _check_networks(self) -> None:
+        k = len(self.charts)
         _demand("sdf outputs", self.sdf.spec.outputs == 1, 1, self.sdf.spec.outputs)
         _demand(
             "chart network",

@@ -5,7 +5,7 @@ from __future__ import annotations
 import threading
 from collections.abc import Iterator
 from concurrent.futures import FIRST_EXCEPTION, ThreadPoolExecutor, wait
-from contextlib import contextmanager
+from contextlib import contextmanager, nullcontext
 
 import torch
 
@@ -24,10 +24,12 @@ def fit_networks(
 ) -> dict[str, Network]:
     """Fit all tasks in parallel; `threads` of them compute at any moment.
 
+    The first, which should be the longest, has a core to itself; the others share what is left.
     The result depends on the tasks, the seed and the device alone. An exception in one task, or
     Ctrl-C, stops the others.
     """
-    cores, stop = threading.Semaphore(threads), threading.Event()
+    shared, stop = threading.Semaphore(max(1, threads - 1)), threading.Event()
+    first = nullcontext() if threads > 1 else shared
 
     def heard(progress: Progress) -> None:
         if stop.is_set():
@@ -36,7 +38,8 @@ def fit_networks(
 
     with _single_core_operations(), ThreadPoolExecutor(len(tasks)) as pool:
         futures = {
-            task.name: pool.submit(train, task, seed, device, cores, heard) for task in tasks
+            task.name: pool.submit(train, task, seed, device, shared if turn else first, heard)
+            for turn, task in enumerate(tasks)
         }
         try:
             done = wait(futures.values(), return_when=FIRST_EXCEPTION).done

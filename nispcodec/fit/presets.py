@@ -19,8 +19,8 @@ MANY_PATCHES = 100
 
 PAPER_HIDDEN = (64,) * 8
 PAPER_LEVELS = 5
-STEPS = {"sdf": 9_000, "chart": 6_000, "uv": 6_500}
-WIDE_STEPS = {"sdf": 7_000, "chart": 4_000, "uv": 4_500}
+STEPS = {"sdf": 7_500, "chart": 4_500, "uv": 5_000}
+WIDE_STEPS = {"sdf": 6_000, "chart": 3_500, "uv": 4_000}
 PAPER_STEPS = 40_000
 """What twenty minutes on two cores allow of the published 2000 epochs of 10^6 samples."""
 
