@@ -97,9 +97,11 @@ class Sampler:
 
     def importance(self, count: int) -> SampleSet:
         """The paper's sampler: uniform in the unit ball, kept with weight exp(-BETA |SDF|)."""
-        candidates = self.label(uniform_ball(self._random, 10 * count))
-        weight = np.exp(-BETA * np.abs(candidates.sdf.astype(np.float64)))
-        return candidates[self._random.choice(len(candidates), count, p=weight / weight.sum())]
+        candidates = uniform_ball(self._random, 10 * count)
+        # The weight needs no sign, which would take most of the time.
+        weight = np.exp(-BETA * np.abs(self.field.closest(candidates, signed=False).sdf))
+        chosen = self._random.choice(len(candidates), count, p=weight / weight.sum())
+        return self.label(candidates[chosen])
 
     def surface(self, count: int) -> SampleSet:
         """Points uniform by area on the outer faces and sheets."""
