@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from nispcodec.asset import TexturedMesh
+from nispcodec.document import Frame
 from nispcodec.metrics.charts import Chooser, chart_accuracy
 from nispcodec.metrics.color import color_psnr
 from nispcodec.metrics.geometry import (
@@ -15,7 +18,7 @@ from nispcodec.metrics.geometry import (
     normal_consistency,
 )
 from nispcodec.metrics.parameterisation import distortion_summary
-from nispcodec.metrics.sides import sides_of
+from nispcodec.metrics.sides import Sides, sides_of
 from nispcodec.metrics.spurious import spurious_components
 from nispcodec.metrics.surface import Array, Surface, SurfacePoints, frame_of
 from nispcodec.metrics.uv import uv_at, uv_errors, uv_summary
@@ -23,6 +26,50 @@ from nispcodec.metrics.uv import uv_at, uv_errors, uv_summary
 Directions = dict[str, Matches]
 Group = dict[str, float | dict[str, float]]
 Report = dict[str, Group]
+
+
+@dataclass(frozen=True)
+class Reference:
+    """An original, ready to be compared with any number of decodes; see `compare`.
+
+    surface in its normalised frame; sides of all the points drawn from it; seen, the outer ones.
+    """
+
+    surface: Surface
+    frame: Frame
+    sides: Sides
+    seen: SurfacePoints
+    samples: int
+    seed: int
+
+    @classmethod
+    def of(cls, original: TexturedMesh, *, samples: int = 100_000, seed: int = 0) -> Reference:
+        """Draw the points. Raises MeshError when the original has no surface."""
+        frame = frame_of(original)
+        surface = Surface.of(original, frame)
+        points = surface.sample(samples, np.random.default_rng([seed, 0]))
+        sides = sides_of(surface, points)
+        return cls(surface, frame, sides, points[sides.outer], samples, seed)
+
+    def compare(self, decoded: TexturedMesh, model: Chooser | None = None) -> Report:
+        """Distortion of one decode. Raises MeshError when it has no surface."""
+        original, second = self.surface, Surface.of(decoded, self.frame)
+        others = second.sample(self.samples, np.random.default_rng([self.seed, 1]))
+        directions = _match(original, second, self.seen, others)
+        hidden, sheet = self.sides.hidden.mean(), self.sides.sheet.mean()
+        report: Report = {
+            "surface": {"hidden": float(hidden), "sheet": float(sheet)},
+            "geometry": _geometry(original, second, directions),
+            "spurious": {**spurious_components(decoded, original.mesh)},
+        }
+        if original.mesh.has_uv.any():
+            report["uv"] = _uv(original, second, directions)
+            report["parameterisation"] = _parameterisation(original, second)
+        report["color"] = {"psnr": color_psnr(original, second, directions.values())}
+        if model is not None:
+            world = self.frame.to_world(self.seen.positions)
+            report["charts"] = _charts(original, self.seen, world, model)
+        return report
 
 
 def compare(
@@ -40,25 +87,7 @@ def compare(
     the original has UVs. The same seed gives the same numbers.
     Raises MeshError when a mesh has no surface.
     """
-    frame = frame_of(original)
-    first, second = Surface.of(original, frame), Surface.of(decoded, frame)
-    points = first.sample(samples, np.random.default_rng([seed, 0]))
-    sides = sides_of(first, points)
-    seen = points[sides.outer]
-    others = second.sample(samples, np.random.default_rng([seed, 1]))
-    directions = _match(first, second, seen, others)
-    report: Report = {
-        "surface": {"hidden": float(sides.hidden.mean()), "sheet": float(sides.sheet.mean())},
-        "geometry": _geometry(first, second, directions),
-        "spurious": {**spurious_components(decoded, original)},
-    }
-    if original.has_uv.any():
-        report["uv"] = _uv(first, second, directions)
-        report["parameterisation"] = _parameterisation(first, second)
-    report["color"] = {"psnr": color_psnr(first, second, directions.values())}
-    if model is not None:
-        report["charts"] = _charts(first, seen, frame.to_world(seen.positions), model)
-    return report
+    return Reference.of(original, samples=samples, seed=seed).compare(decoded, model)
 
 
 def _match(

@@ -19,14 +19,26 @@ def triangle_distortions(surface: Surface) -> Array:
     """
     chosen = surface.mesh.has_uv & (surface.areas > 0)
     corners, uvs = surface.corners[chosen], surface.mesh.corner_uvs[chosen]
-    edges = np.stack([corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]], axis=2)
-    uv_edges = np.stack([uvs[:, 1] - uvs[:, 0], uvs[:, 2] - uvs[:, 0]], axis=2)
-    # QR turns each triangle into its own plane; the map is then the 2 x 2 matrix uv_edges R^-1.
-    jacobians = uv_edges @ np.linalg.inv(np.linalg.qr(edges).R)
-    sigmas = np.linalg.svd(jacobians, compute_uv=False)
+    a, b = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
+    s, t = uvs[:, 1] - uvs[:, 0], uvs[:, 2] - uvs[:, 0]
+    # The triangle in its own plane: a along the first axis, b = (across, height).
+    length = np.linalg.norm(a, axis=1)
+    across = (a * b).sum(axis=1) / length
+    height = 2 * surface.areas[chosen] / length
+    first = s / length[:, None]
+    second = (t - first * across[:, None]) / height[:, None]
+    large, small = _singular_values(first, second)
     with np.errstate(divide="ignore"):
-        distortions: Array = np.maximum(sigmas[:, 0], 1 / sigmas[:, 1])
+        distortions: Array = np.maximum(large, 1 / small)
     return distortions
+
+
+def _singular_values(first: Array, second: Array) -> tuple[Array, Array]:
+    """Of 2 x 2 matrices given by their columns (n, 2): the larger and the smaller (n,)."""
+    # A matrix is a rotation with scaling plus a reflection with scaling (Blinn 1996).
+    turned = np.hypot(first[:, 0] + second[:, 1], first[:, 1] - second[:, 0]) / 2
+    mirrored = np.hypot(first[:, 0] - second[:, 1], first[:, 1] + second[:, 0]) / 2
+    return turned + mirrored, np.abs(turned - mirrored)
 
 
 def distortion_summary(surface: Surface) -> dict[str, float]:

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from nispcodec.asset import TexturedMesh
-from nispcodec.metrics.surface import Surface, frame_of
+from nispcodec.metrics.surface import Array, Surface, frame_of
 
 FAR = 0.02
 
@@ -18,15 +18,25 @@ def spurious_components(decoded: TexturedMesh, original: TexturedMesh) -> dict[s
     positions; it is far when all its vertices are.
     """
     frame = frame_of(original)
-    surface = Surface.of(decoded, frame)
+    surface, known = Surface.of(decoded, frame), Surface.of(original, frame)
     labels = components(decoded)
-    distances = np.linalg.norm(
-        Surface.of(original, frame).closest(surface.positions).positions - surface.positions, axis=1
-    )
-    nearest = np.full(labels.max(initial=-1) + 1, np.inf)
-    np.minimum.at(nearest, labels, distances[decoded.faces].min(axis=1))
+    _, first = np.unique(labels, return_index=True)
+    # One vertex near the original clears a component: only of those left are all vertices asked.
+    suspects = _distances(known, surface, decoded.faces[first, 0]) > FAR
+    asked = np.flatnonzero(suspects[labels])
+    nearest = np.where(suspects, np.inf, 0.0)
+    corners = _distances(known, surface, decoded.faces[asked].ravel()).reshape(-1, 3)
+    np.minimum.at(nearest, labels[asked], corners.min(axis=1))
     far = nearest > FAR
     return {"count": int(far.sum()), "area": float(surface.areas[far[labels]].sum())}
+
+
+def _distances(known: Surface, surface: Surface, vertices: NDArray[np.integer]) -> Array:
+    positions = surface.positions[vertices]
+    if len(positions) == 0:
+        return np.zeros(0)
+    distances: Array = np.linalg.norm(known.closest(positions).positions - positions, axis=1)
+    return distances
 
 
 def components(mesh: TexturedMesh) -> NDArray[np.int64]:
