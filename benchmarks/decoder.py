@@ -165,13 +165,17 @@ def naive(document: Document, resolution: int) -> TexturedMesh:
 
 
 def fidelity(document: Document, original: TexturedMesh) -> Record:
-    """Soundness of the decoded mesh at 256, its distortion, and the colour of the naive one."""
-    mesh, report = textured_mesh(document, RESOLUTIONS[0])
+    """Soundness of the mesh of a plain decode, its distortion, the colour of the naive one."""
+    mesh, report = textured_mesh(document)
     measured = compare(original, mesh)
-    record = {"soundness": soundness(mesh, report.dropped), "geometry": measured["geometry"]}
+    record = {
+        "resolution": report.resolution,
+        "soundness": soundness(mesh, report.dropped),
+        "geometry": measured["geometry"],
+    }
     if document.uv is None:
         return record
-    smeared = compare(original, naive(document, RESOLUTIONS[0]))
+    smeared = compare(original, naive(document, report.resolution))
     return record | {
         "uv": measured["uv"],
         "color_psnr": measured["color"]["psnr"],

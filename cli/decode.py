@@ -26,7 +26,9 @@ REBAKE_FACES = 20_000
 @click.option(
     "--mesh", "kind", flag_value="mesh", default="mesh", help="A textured mesh (default)."
 )
-@click.option("--resolution", type=click.IntRange(8, 2048), help="Cells a side; 256 or as needed.")
+@click.option(
+    "--resolution", type=click.IntRange(8, 2048), help="Cells a side; 256 to 512 unless told."
+)
 @click.option("--faces", type=click.IntRange(4), help="Simplify to at most this many triangles.")
 @click.option(
     "--target-error",

@@ -16,7 +16,10 @@ from nispcodec.decode.seams import cut_along_seams
 from nispcodec.decode.simplify import deviation, simplest, simplified
 from nispcodec.document import Document
 
-DEFAULT_RESOLUTION = 256
+# The default resolution: as fine as FACES triangles allow, within LEAST and MOST.
+FACES = 200_000
+LEAST, MOST = 256, 512
+COARSE = 64
 MAX_RESOLUTION = 2048
 FITTINGS = 4
 
@@ -46,11 +49,16 @@ def textured_mesh(
 
 
 def default_resolution(document: Document) -> int:
-    """256, or as many cells as the document's sheets need: one for their half thickness."""
-    if not document.shell:
-        return DEFAULT_RESOLUTION
-    wanted = int(np.ceil(2 * LIMIT / document.shell))
-    return min(max(DEFAULT_RESOLUTION, wanted), MAX_RESOLUTION)
+    """256; finer where the surface is small or thin; one cell for the half thickness of sheets.
+
+    The faces of a coarse extraction, times 4 for each doubling, tell those of a fine one. Slender
+    assets, and those whose walls a coarse grid mostly misses, have few: they get up to 512.
+    """
+    coarse = len(extract(document.sdf, COARSE).faces)
+    affordable = int(COARSE * np.sqrt(FACES / max(coarse, 1)))
+    cells = min(max(LEAST, affordable), MOST)
+    sheets = int(np.ceil(2 * LIMIT / document.shell)) if document.shell else 0
+    return min(max(cells, sheets), MAX_RESOLUTION)
 
 
 def _surface(
