@@ -23,6 +23,7 @@ RULES: dict[str, tuple[set[str], set[str]]] = {
         {"decode"},
     ),
     "metrics": ({"numpy", "scipy", "skimage", "igl", "PIL"}, {"metrics"}),
+    "render": ({"numpy", "scipy", "embreex", "PIL"}, {"render", "decode", "metrics"}),
 }
 
 

@@ -1,0 +1,90 @@
+"""A model to look at without a mesh: sphere tracing; normals, charts and UVs by network."""
+
+from __future__ import annotations
+
+from functools import cached_property
+
+import numpy as np
+
+from nispcodec.asset import Material, Texture
+from nispcodec.decode.evaluate import gradient
+from nispcodec.decode.model import NispModel
+from nispcodec.document import Frame
+from nispcodec.render.fragments import Cast, Floats, Fragments, Indices, Integers
+from nispcodec.render.march import March
+from nispcodec.render.space import Space, bounding_space
+from nispcodec.render.tangents import tangent_axes
+
+# How far from a point its UVs are asked, to see how they change (normalised frame).
+OFFSET = np.float32(1e-3)
+# A hit is moved along its ray by no more than this.
+CORRECTION = 5e-4
+
+
+class FieldScene:
+    """The networks of a model as a scene."""
+
+    def __init__(self, model: NispModel) -> None:
+        self.model = model
+
+    @property
+    def frame(self) -> Frame:
+        """The document's."""
+        return self.model.document.frame
+
+    @property
+    def materials(self) -> tuple[Material, ...]:
+        """The document's."""
+        return self.model.document.materials
+
+    @property
+    def textures(self) -> tuple[Texture, ...]:
+        """The document's."""
+        return self.model.document.textures
+
+    @cached_property
+    def space(self) -> Space:
+        """Where the surface may be; found once."""
+        return bounding_space(self.model.document.sdf)
+
+    def cast(self, origins: Floats, directions: Floats, layer: int = 0) -> Cast:
+        """See `Scene.cast`."""
+        sdf = self.model.document.sdf
+        trace = March(sdf, self.space, origins, directions, inside=layer % 2 == 1).run()
+        rays = np.flatnonzero(np.isfinite(trace.distances))
+        points = origins[rays] + trace.distances[rays, None] * directions[rays]
+        values, slopes = gradient(sdf, points)
+        # One Newton step along the ray: a hit is within epsilon, not exact.
+        against = (slopes * directions[rays]).sum(axis=1)
+        shift = -values / np.where(np.abs(against) < 0.1, np.inf, against)
+        distances = trace.distances[rays] + np.clip(shift, -CORRECTION, CORRECTION)
+        points = origins[rays] + distances[:, None] * directions[rays]
+        fragments = self._fragments(rays, distances, points, slopes, directions[rays])
+        return Cast(fragments, trace.steps, trace.lost)
+
+    def _fragments(
+        self, rays: Indices, distances: Floats, points: Floats, slopes: Floats, towards: Floats
+    ) -> Fragments:
+        table = self.model.document.charts
+        normals = slopes / np.maximum(np.linalg.norm(slopes, axis=1, keepdims=True), 1e-12)
+        charts = self.model.charts(points, "normalised")
+        uvs = self.model.uv(points, "normalised", charts)
+        return Fragments(
+            rays=rays,
+            distances=distances,
+            normals=normals,
+            facing=(normals * towards).sum(axis=1) < 0,
+            uvs=uvs,
+            jacobians=self._jacobians(points, normals, charts, uvs),
+            materials=table.materials[charts],
+            textured=table.has_uv[charts],
+            charts=charts,
+        )
+
+    def _jacobians(self, points: Floats, normals: Floats, charts: Integers, uvs: Floats) -> Floats:
+        """(n, 2, 3): the UV network's Jacobian within the tangent plane, by two more queries."""
+        jacobians = np.zeros((len(points), 2, 3), np.float32)
+        for axis in tangent_axes(normals):
+            moved = self.model.uv(points + OFFSET * axis, "normalised", charts)
+            jacobians += ((moved - uvs) / OFFSET)[:, :, None] * axis[:, None, :]
+        return jacobians

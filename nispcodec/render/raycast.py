@@ -1,0 +1,79 @@
+"""A triangle mesh to look at: first hits by ray casting (Embree)."""
+
+from __future__ import annotations
+
+from functools import cached_property
+
+import numpy as np
+
+from nispcodec.asset import Material, Texture, TexturedMesh
+from nispcodec.document import Frame
+from nispcodec.metrics.surface import Array, Indices, Surface, SurfacePoints, frame_of
+from nispcodec.metrics.uv import uv_at
+from nispcodec.render.fragments import Cast, Floats, Fragments
+from nispcodec.render.normals import corner_normals
+
+
+class MeshScene:
+    """A mesh, placed by `frame`: its own, or the original's when it is compared with one."""
+
+    def __init__(self, mesh: TexturedMesh, frame: Frame | None = None) -> None:
+        from embreex.mesh_construction import TriangleMesh
+        from embreex.rtcore_scene import EmbreeScene
+
+        self.frame = frame or frame_of(mesh)
+        self.surface = Surface.of(mesh, self.frame)
+        self._embree = EmbreeScene()
+        TriangleMesh(self._embree, self.surface.positions.astype(np.float32), mesh.faces)
+
+    @property
+    def materials(self) -> tuple[Material, ...]:
+        """The mesh's materials."""
+        return self.surface.mesh.materials
+
+    @property
+    def textures(self) -> tuple[Texture, ...]:
+        """The mesh's textures."""
+        return self.surface.mesh.textures
+
+    def cast(self, origins: Floats, directions: Floats, layer: int = 0) -> Cast:
+        """See `Scene.cast`."""
+        found = self._embree.run(origins, directions, output=True)
+        rays = np.flatnonzero(found["primID"] >= 0)
+        u, v = found["u"][rays].astype(np.float64), found["v"][rays].astype(np.float64)
+        faces, weights = found["primID"][rays].astype(np.int64), np.stack([1 - u - v, u, v], axis=1)
+        points = SurfacePoints(faces, weights, self.surface.interpolate(faces, weights))
+        fragments = self._fragments(rays, found["tfar"][rays], points, directions[rays])
+        count = len(origins)
+        return Cast(fragments, np.zeros(count, np.int32), np.zeros(count, np.bool_))
+
+    def _fragments(
+        self, rays: Indices, distances: Floats, points: SurfacePoints, towards: Floats
+    ) -> Fragments:
+        mesh, faces = self.surface.mesh, points.faces
+        normals = np.einsum("nk,nkd->nd", points.weights, self._corner_normals[faces])
+        normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-12)
+        return Fragments(
+            rays=rays,
+            distances=distances,
+            normals=normals.astype(np.float32),
+            facing=(self.surface.normals[faces] * towards).sum(axis=1) < 0,
+            uvs=uv_at(self.surface, points).astype(np.float32),
+            jacobians=self._jacobians[faces],
+            materials=mesh.face_materials[faces],
+            textured=mesh.has_uv[faces],
+            charts=np.full(len(faces), -1, np.int32),
+        )
+
+    @cached_property
+    def _corner_normals(self) -> Array:
+        return corner_normals(self.surface)
+
+    @cached_property
+    def _jacobians(self) -> Floats:
+        """(m, 2, 3): how the UV of each face changes along x, y, z in its plane."""
+        corners, uvs = self.surface.corners, self.surface.mesh.corner_uvs
+        edges = corners[:, 1:] - corners[:, :1]
+        uv_edges = uvs[:, 1:] - uvs[:, :1]
+        jacobians = uv_edges.transpose(0, 2, 1) @ np.linalg.pinv(edges).transpose(0, 2, 1)
+        return np.asarray(jacobians, dtype=np.float32)

@@ -1,0 +1,51 @@
+"""Pictures of a model or a mesh from several views, by the same camera, lamp and shader."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+import numpy as np
+
+from nispcodec.asset import TexturedMesh
+from nispcodec.decode.model import NispModel
+from nispcodec.document import Frame
+from nispcodec.render.camera import Camera
+from nispcodec.render.field import FieldScene
+from nispcodec.render.fragments import Floats, Scene
+from nispcodec.render.maps import Maps
+from nispcodec.render.picture import Eye
+from nispcodec.render.raycast import MeshScene
+
+
+def scene_of(asset: NispModel | TexturedMesh | Scene, frame: Frame | None = None) -> Scene:
+    """Something to render: a model is sphere-traced, a mesh is hit by rays.
+
+    `frame` places a mesh: that of the original, when the mesh is compared with it; by default its
+    own. Making a scene takes time: keep it for several pictures.
+    """
+    if isinstance(asset, NispModel):
+        return FieldScene(asset)
+    return MeshScene(asset, frame) if isinstance(asset, TexturedMesh) else asset
+
+
+def render_views(
+    asset: NispModel | TexturedMesh | Scene,
+    views: Iterable[Camera],
+    size: int = 512,
+    frame: Frame | None = None,
+    normal_map: bool = True,
+) -> list[Floats]:
+    """One picture a view: (size, size, 4) float32 in [0, 1], sRGB-encoded RGB, straight alpha.
+
+    Top row first; transparent where nothing is hit. `frame`: see `scene_of`.
+    """
+    scene = scene_of(asset, frame)
+    maps = Maps(scene.textures)
+    return [Eye(scene, maps, view, size, normal_map).picture() for view in views]
+
+
+def on_white(picture: Floats) -> Floats:
+    """(h, w, 3): the picture on a white ground, mixed as image viewers do."""
+    alpha = picture[..., 3:]
+    mixed: Floats = (picture[..., :3] * alpha + (1 - alpha)).astype(np.float32)
+    return mixed
