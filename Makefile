@@ -13,10 +13,12 @@ BIN := .venv/bin
 setup: .venv/ready
 
 # torch first and exact: an open range can pull gigabytes of CUDA.
+# Simplification is for the benchmarks alone, and goes without where there is no C++ compiler.
 .venv/ready: pyproject.toml constraints.txt
 	$(PYTHON) -m venv .venv
 	$(BIN)/pip install --disable-pip-version-check -q -c constraints.txt torch==2.13.0
 	$(BIN)/pip install --disable-pip-version-check -q -c constraints.txt -e '.[dev,unwrap,bench]'
+	-$(BIN)/pip install --disable-pip-version-check -q -c constraints.txt -e '.[simplify]'
 	touch $@
 
 demo: setup

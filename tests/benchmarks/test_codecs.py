@@ -1,0 +1,99 @@
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+pytest.importorskip("DracoPy", reason="peers: extra `bench`")
+
+from benchmarks.codecs import CODECS, Setting, Unavailable, codec, gltfpack
+from benchmarks.corners import corners_of
+from benchmarks.simplify import simplified
+from benchmarks.source import Source
+from nispcodec.decode.writers import write_mesh
+from nispcodec.mesh.procedural import sample_asset
+
+
+@pytest.fixture(scope="module")
+def source(tmp_path_factory: pytest.TempPathFactory) -> Source:
+    path = tmp_path_factory.mktemp("asset") / "mug.obj"
+    write_mesh(sample_asset(), path)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("benchmarks.source.SAMPLES", 4000)
+        made = Source(path)
+        assert made.reference.samples == 4000
+    return made
+
+
+# Codec -> setting and the largest mean distance and UV error that its bits explain.
+EXPECTED: dict[str, tuple[Setting, float, float]] = {
+    "obj": ({"text": "as it is"}, 1e-12, 1e-3),
+    "obj_xz": ({"text": "4 digits"}, 3e-4, 1e-3),
+    "obj_zst": ({"text": "4 digits"}, 3e-4, 1e-3),
+    "glb": ({}, 1e-6, 1e-3),
+    "draco": ({"qp": 11, "qt": 10}, 5e-4, 2e-3),
+    "simplified_draco": ({"surface": "all", "kept": 0.5, "qp": 11, "qt": 10}, 3e-3, 2e-2),
+    "gltfpack": ({"compression": "cc", "vp": 14, "vt": 12}, 1e-4, 1e-3),
+}
+
+
+@pytest.mark.parametrize("name", EXPECTED)
+def test_what_comes_back_is_as_close_as_the_bits_allow(name: str, source: Source) -> None:
+    setting, distance, uv = EXPECTED[name]
+    if name == "simplified_draco":
+        pytest.importorskip("meshoptimizer", reason="extra `simplify`")
+    coder = codec(name)
+    try:
+        data = coder.encode(source, setting)
+    except Unavailable as why:
+        pytest.skip(str(why))
+    decoded = coder.decode(data, source)
+    assert decoded.materials == source.mesh.materials
+    report = source.reference.compare(decoded)
+    assert report["geometry"]["larger"]["mean"] <= distance
+    assert report["uv"]["larger"]["mean"] <= uv
+
+
+def test_several_materials_survive_draco(source: Source) -> None:
+    draco = codec("draco")
+    decoded = draco.decode(draco.encode(source, {"qp": 11, "qt": 10}), source)
+    counts = [np.bincount(mesh.face_materials).tolist() for mesh in (source.mesh, decoded)]
+    assert counts[0] == counts[1]
+    assert len(counts[0]) > 1
+
+
+def test_more_bits_cost_more_and_lose_less(source: Source) -> None:
+    draco = codec("draco")
+    files = [draco.encode(source, {"qp": bits, "qt": bits}) for bits in (8, 10, 12)]
+    errors = [
+        source.reference.compare(draco.decode(data, source))["geometry"]["larger"]["mean"]
+        for data in files
+    ]
+    assert len(files[0]) < len(files[1]) < len(files[2])
+    assert errors[0] > errors[1] > errors[2]
+
+
+def test_simplification_reaches_the_asked_count_on_the_given_vertices(source: Source) -> None:
+    pytest.importorskip("meshoptimizer", reason="extra `simplify`")
+    corners = corners_of(source.mesh)
+    fewer = simplified(corners, len(corners.faces) // 4)
+    assert len(fewer.faces) <= len(corners.faces) // 4
+    known = {tuple(row) for row in np.hstack([corners.positions, corners.uvs]).tolist()}
+    assert {tuple(row) for row in np.hstack([fewer.positions, fewer.uvs]).tolist()} <= known
+
+
+def test_gltfpack_tells_when_it_is_missing(source: Source, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(gltfpack.shutil, "which", lambda name: None)
+    monkeypatch.setattr(gltfpack, "LOCAL", Path("nowhere"))
+    with pytest.raises(Unavailable, match="npm install gltfpack"):
+        gltfpack.settings(source, quick=False)
+
+
+@pytest.mark.parametrize("name", set(CODECS) - {"gltfpack"})
+def test_a_quick_run_has_fewer_settings(name: str, source: Source) -> None:
+    if name == "simplified_draco":
+        pytest.importorskip("meshoptimizer", reason="extra `simplify`")
+    quick, full = (codec(name).settings(source, quick) for quick in (True, False))
+    assert 1 <= len(quick) <= len(full)
+    assert all(setting in full for setting in quick)

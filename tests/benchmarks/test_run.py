@@ -1,0 +1,78 @@
+from __future__ import annotations
+
+import os
+import time
+from pathlib import Path
+
+import pytest
+
+from benchmarks import runner
+from benchmarks.codecs import Unavailable
+from benchmarks.hull import lower_hull
+from benchmarks.isolated import WorkFailed, isolated
+from benchmarks.runner import Clock, Job, plan
+from benchmarks.source import Source
+from benchmarks.store import Store
+
+
+def test_work_in_its_own_process_tells_time_and_memory() -> None:
+    def work() -> int:
+        time.sleep(0.2)
+        return len(bytes(range(256)) * 200_000)
+
+    answer, cost = isolated(work)
+    assert answer == 51_200_000
+    assert cost.seconds >= 0.2
+    assert 50e6 < cost.peak_bytes < 120e6
+
+
+def test_an_exception_and_a_crash_are_told_apart_from_the_rest() -> None:
+    def wrong() -> None:
+        raise ValueError("no such thing")
+
+    with pytest.raises(WorkFailed, match="ValueError: no such thing"):
+        isolated(wrong)
+    with pytest.raises(WorkFailed, match="code 7"):
+        isolated(lambda: os._exit(7))
+
+
+def test_hull_keeps_what_no_mix_of_others_beats() -> None:
+    pairs = [(100, 1.0), (1000, 0.1), (300, 0.9), (320, 0.2), (2000, 0.1), (90, 2.0)]
+    assert lower_hull(pairs) == [5, 0, 3, 1]
+
+
+def test_store_forgets_failures_only(tmp_path: Path) -> None:
+    store = Store(tmp_path)
+    record = {"asset": "a", "codec": "c", "setting": {"q": 1}}
+    assert not store.holds("a", "c", {"q": 1})
+    store.put(record | {"failure": "bad luck"}, b"")
+    assert not store.holds("a", "c", {"q": 1})
+    store.put(record | {"bytes": 3}, b"abc")
+    assert store.holds("a", "c", {"q": 1})
+    assert store.file(record).read_bytes() == b"abc"
+    assert store.records() == [record | {"bytes": 3}]
+
+
+class Stub:
+    def settings(self, source: Source, quick: bool) -> list[dict[str, int]]:
+        if source.name == "missing":
+            raise Unavailable("not here")
+        if source.name == "bad":
+            raise ValueError("cannot be read")
+        return [{"q": 1}, {"q": 2}]
+
+
+def test_plan_goes_on_past_what_cannot_run(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(runner, "codec", lambda name: Stub())
+    chosen = [Source(Path(f"{name}.obj")) for name in ("missing", "bad", "good")]
+    planned = list(plan(chosen, ["c"], quick=False))
+    assert planned[0] == {"asset": "missing", "codec": "c", "setting": {}, "skipped": "not here"}
+    assert planned[1]["failure"] == "ValueError: cannot be read"
+    assert planned[2:] == [Job(Path("good.obj"), "c", {"q": n}) for n in (1, 2)]
+
+
+def test_time_left_is_told_by_codec() -> None:
+    jobs = [Job(Path("a.obj"), name, {}) for name in ("fast", "fast", "slow", "slow")]
+    clock = Clock(jobs, workers=2)
+    assert clock.left("fast", 1.0) == pytest.approx(1.5)
+    assert clock.left("slow", 99.0) == pytest.approx(50.0)
