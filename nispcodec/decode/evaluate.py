@@ -141,8 +141,8 @@ class _Forward:
             activations = np.vstack([before, np.ones((1, len(points)), np.float32)])
         value = self._output(self.layers[-1] @ activations)
         slope = self.layers[-1][:, :-1].T * self._output_slope(value)
-        for layer, local in zip(reversed(self.layers[:-1]), reversed(slopes), strict=True):
-            slope = layer[:, :-1].T @ (slope * local)
+        for layer, steep in zip(reversed(self.layers[:-1]), reversed(slopes), strict=True):
+            slope = layer[:, :-1].T @ (slope * steep)
         return value[0], self._through_encoding(encoded[:-1], slope).T
 
     def _input(self, points: Floats, charts: Charts | None) -> Floats:
