@@ -14,19 +14,21 @@ from numpy.typing import NDArray
 
 from nispcodec.decode.components import OUTSIDE
 from nispcodec.decode.evaluate import evaluate
-from nispcodec.decode.extract import LIMIT
 from nispcodec.network import Network
 from nispcodec.render.fragments import Floats, Indices, Integers
 from nispcodec.render.space import Space
 
 EPSILON = 1e-4
-MAX_STEPS = 200
+# A ray that grazes the surface goes on by so much at least: nothing that a field holds is thinner.
+LEAST_STEP = np.float32(5e-4)
+# Where less than this is known to be free, the network is asked.
+SHORTEST = np.float32(5e-4)
+MAX_STEPS = 250
 REFINEMENTS = 3
 # Weight of the newest step in the trend of the field along a ray.
-NEWEST = np.float32(0.5)
+NEWEST = np.float32(0.3)
 # Rays that leave this ball meet nothing any more.
 BALL = OUTSIDE + 0.06
-NUDGE = np.float32(1e-5)
 
 
 @dataclass(frozen=True)
@@ -74,24 +76,23 @@ class March:
         self._network, self._space = network, space
         self._origins, self._directions = origins, directions
         self._scale = np.float32((-1 if inside else 1) / space.slope)
+        self._steps = np.zeros(len(origins), np.int32)
 
     def run(self) -> Trace:
         """First crossings of the surface."""
-        count = len(self._origins)
-        distances = np.full(count, np.inf, np.float32)
-        steps, lost = np.zeros(count, np.int32), np.zeros(count, np.bool_)
+        distances = np.full(len(self._origins), np.inf, np.float32)
+        lost = np.zeros(len(self._origins), np.bool_)
         front, leave = self._into_ball()
         for _ in range(MAX_STEPS):
-            front = self._through_clear(front, leave)
-            if len(front.number) == 0:
-                break
-            steps[front.number] += 1
-            radius = self._radius(front.number, front.at)
+            radius = self._sphere(front.number, front.at)
             hit = radius < EPSILON
             distances[front.number[hit]] = self._crossing(front[hit], radius[hit])
             front = _stepped(front[~hit], radius[~hit])
+            front = front[front.at < leave[front.number]]
+            if len(front.number) == 0:
+                break
         lost[front.number] = True
-        return Trace(distances, steps, lost)
+        return Trace(distances, self._steps, lost)
 
     def _into_ball(self) -> tuple[_Front, Floats]:
         """The rays that meet the ball, where they enter it, and where each ray leaves it (n,)."""
@@ -103,37 +104,17 @@ class March:
         still = np.zeros(len(number), np.float32)
         return _Front(number, np.maximum(along - half, 0)[number], still, still, still - 1), leave
 
-    def _through_clear(self, front: _Front, leave: Floats) -> _Front:
-        """The rays moved on to where the surface may be; those that have left are gone."""
-        near = np.zeros(len(front.number), np.bool_)
-        at, step, trend = front.at.copy(), front.step.copy(), front.trend.copy()
-        moving = np.arange(len(at))
-        while len(moving):
-            number = front.number[moving]
-            far = self._clear(number, at[moving])
-            near[moving[far == 0]] = True
-            moving, far = moving[far > 0], far[far > 0]
-            at[moving] += far
-            step[moving], trend[moving] = 0, -1
-            moving = moving[at[moving] < leave[front.number[moving]]]
-        return _Front(front.number, at, step, front.radius, trend)[near]
+    def _sphere(self, number: Indices, at: Floats) -> Floats:
+        """Radii in which there is no surface round points of the rays; negative beyond it."""
+        points = self._points(number, at)
+        radius = self._space.free(points)
+        asked = radius < SHORTEST
+        self._steps[number[asked]] += 1
+        radius[asked] = self._field(points[asked])
+        return radius
 
-    def _clear(self, number: Indices, at: Floats) -> Floats:
-        """How far the rays may go without asking the network: 0 where the surface may be."""
-        place = (self._points(number, at) + np.float32(LIMIT)) / self._space.cell
-        cell = np.clip(place.astype(np.int32), 0, len(self._space.clear) - 1)
-        clear = self._space.clear[cell[:, 0], cell[:, 1], cell[:, 2]]
-        # Beside cells that may hold surface there is nothing but the way to the cell's own border.
-        tight = np.flatnonzero((clear > 0) & (clear < self._space.cell))
-        towards = self._directions[number[tight]]
-        towards = np.where(np.abs(towards) < NUDGE, NUDGE, towards)
-        walls = (cell[tight] + (towards > 0) - place[tight]) / towards
-        clear[tight] = np.maximum(clear[tight], walls.min(axis=1) * self._space.cell + NUDGE)
-        return clear
-
-    def _radius(self, number: Indices, at: Floats) -> Floats:
-        """The sphere round each point that the surface cannot be in; negative beyond it."""
-        return evaluate(self._network, self._points(number, at))[:, 0] * self._scale
+    def _field(self, points: Floats) -> Floats:
+        return evaluate(self._network, points)[:, 0] * self._scale
 
     def _points(self, number: Indices, at: Floats) -> Floats:
         return self._origins[number] + at[:, None] * self._directions[number]
@@ -147,7 +128,7 @@ class March:
             # A share of the bracket stays on either side, so that it always shrinks.
             share = np.clip(before / (before - beyond), 0.05, 0.95)
             middle = low + share * (high - low)
-            there = self._radius(number, middle)
+            there = self._field(self._points(number, middle))
             low, before = np.where(there > 0, (middle, there), (low, before))
             high, beyond = np.where(there > 0, (high, beyond), (middle, there))
         distances = front.at.copy()
@@ -157,10 +138,11 @@ class March:
 
 def _stepped(front: _Front, radius: Floats) -> _Front:
     """One step on; back to the edge of the sphere before where the last step tore."""
-    torn = front.step > front.radius + radius
-    change = (radius - front.radius) / np.maximum(front.step, NUDGE)
+    before, here = np.maximum(front.radius, LEAST_STEP), np.maximum(radius, LEAST_STEP)
+    torn = front.step > before + here
+    change = (radius - front.radius) / np.maximum(front.step, LEAST_STEP)
     trend = np.where(front.step > 0, front.trend + NEWEST * (change - front.trend), front.trend)
     trend = np.where(torn, np.float32(-1), np.clip(trend, -1, 0.5))
-    step = np.where(torn, front.radius, 2 / (1 - trend) * radius)
-    at = front.at + np.where(torn, front.radius - front.step, step)
+    step = np.where(torn, before, 2 / (1 - trend) * here)
+    at = front.at + np.where(torn, before - front.step, step)
     return _Front(front.number, at, step, np.where(torn, front.radius, radius), trend)
