@@ -44,7 +44,7 @@ def textured_mesh(
     if error is not None:
         surface = simplest(document.sdf, surface, error)
     cut, charts = _cut(document, surface) if faces is None else _fitted(document, surface, faces)
-    mesh = _dressed(document, cut, charts)
+    mesh = _dressed(document, *_opened(document, cut, charts))
     return replace(mesh, warnings=report.warnings), report
 
 
@@ -91,6 +91,16 @@ def _fitted(document: Document, surface: Surface, faces: int) -> tuple[Surface, 
             break
         target = int(0.99 * target * faces / len(cut.faces))
     return cut, charts
+
+
+def _opened(document: Document, surface: Surface, charts: IndexArray) -> tuple[Surface, IndexArray]:
+    """Without the membranes that the field draws across the asset's openings."""
+    if not document.charts.openings:
+        return surface, charts
+    kept = charts != len(document.charts) - 1
+    used, faces = np.unique(surface.faces[kept], return_inverse=True)
+    faces = faces.reshape(-1, 3).astype(np.int32)
+    return Surface(surface.positions[used], faces, surface.cell), charts[kept]
 
 
 def _dressed(document: Document, surface: Surface, charts: IndexArray) -> TexturedMesh:

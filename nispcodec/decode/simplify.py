@@ -10,6 +10,7 @@ import numpy as np
 
 from nispcodec.decode.evaluate import evaluate
 from nispcodec.decode.extract import Surface
+from nispcodec.decode.manifold import manifold
 from nispcodec.network import Network
 
 # How eagerly long edges collapse, 0 to 10: above 5 thin parts fold over, below 5 counts are missed.
@@ -32,9 +33,9 @@ def simplified(surface: Surface, faces: int) -> Surface:
     noise = np.random.default_rng(0).normal(0, ROUGHNESS * surface.cell, surface.positions.shape)
     rough = surface.positions + noise.astype(np.float32)
     positions, corners = simplify(rough, surface.faces, target_count=faces, agg=AGGRESSIVENESS)
-    return without_fins(
-        Surface(positions.astype(np.float32), corners.astype(np.int32), surface.cell)
-    )
+    fewer = Surface(positions.astype(np.float32), corners.astype(np.int32), surface.cell)
+    # Sheets taken apart may leave two faces that have nothing but each other.
+    return without_fins(manifold(without_fins(fewer)))
 
 
 def without_fins(surface: Surface) -> Surface:
