@@ -11,7 +11,20 @@ from typing import Any
 
 import click
 
-COMMANDS = ("encode", "decode", "info", "verify", "recode", "compare", "query", "sample")
+COMMANDS = (
+    "encode",
+    "decode",
+    "render",
+    "sheet",
+    "info",
+    "verify",
+    "recode",
+    "unpack",
+    "retexture",
+    "compare",
+    "query",
+    "sample",
+)
 
 
 class LazyGroup(click.Group):
@@ -60,5 +73,6 @@ def main() -> None:
     nisp sample -o demo                      make an asset to play with
     nisp encode demo/sample.obj -o s.nisp    fit, quantise, write
     nisp decode s.nisp -o s.glb              textured mesh again
+    nisp render s.nisp -o s.png              a picture of it
     nisp compare demo/sample.obj s.nisp      what was lost
     """

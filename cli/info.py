@@ -10,15 +10,16 @@ import click
 from .report import print_group, print_json, rate
 
 if TYPE_CHECKING:
-    from nispcodec.asset import Material
+    from nispcodec.asset import Material, Texture
     from nispcodec.document import Document
     from nispcodec.network import Network
 
 
 @click.command("info", short_help="Show what a .nisp file holds.")
 @click.argument("model", type=click.Path(path_type=Path))
+@click.option("--textures", "listed", is_flag=True, help="The textures and who uses them, only.")
 @click.option("--json", "as_json", is_flag=True, help="As JSON.")
-def command(model: Path, as_json: bool) -> None:
+def command(model: Path, listed: bool, as_json: bool) -> None:
     """Show MODEL's sections, bytes per part, networks, materials and textures.
 
     \b
@@ -27,7 +28,8 @@ def command(model: Path, as_json: bool) -> None:
     from nispcodec.format import unpack
 
     data = model.read_bytes()
-    facts = describe(unpack(data), data)
+    document = unpack(data)
+    facts = {"textures": list_textures(document)} if listed else describe(document, data)
     if as_json:
         print_json(facts)
     else:
@@ -53,6 +55,32 @@ def describe(document: Document, data: bytes) -> dict[str, Any]:
         ],
         "measured": dict(document.info),
     }
+
+
+def list_textures(document: Document) -> list[dict[str, Any]]:
+    """Every texture: its size in bytes and pixels, and the materials' slots that show it."""
+    return [
+        {
+            "name": texture.name,
+            "mime": texture.mime,
+            "bytes": len(texture.data),
+            "pixels": _pixels(texture),
+            "used_by": ", ".join(
+                f"{material.name}.{slot}"
+                for material in document.materials
+                for slot, used in material.maps.items()
+                if used.texture == index
+            ),
+        }
+        for index, texture in enumerate(document.textures)
+    ]
+
+
+def _pixels(texture: Texture) -> str:
+    from nispcodec.texture import decode_image
+
+    height, width = decode_image(texture).shape[:2]
+    return f"{width} x {height}"
 
 
 def _sections(data: bytes) -> list[dict[str, Any]]:

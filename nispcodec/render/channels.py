@@ -1,0 +1,71 @@
+"""What a picture can show besides light: one function a channel, from samples to colours."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from nispcodec.errors import QueryError
+from nispcodec.render.fragments import Floats
+from nispcodec.render.picture import Eye, Samples
+
+MANY_STEPS = 64
+# Neighbouring numbers get hues far apart.
+GOLDEN = 0.618034
+
+
+def channel_picture(eye: Eye, channel: str) -> Floats:
+    """(size, size, 4) float32 in [0, 1] of a channel of `CHANNELS`; raises QueryError otherwise.
+
+    "color" is what the eye sees. The others have one sample a pixel, as they are no light to mix.
+    """
+    if channel == "color":
+        return eye.picture()
+    if channel not in _COLORS:
+        known = ", ".join(CHANNELS)
+        raise QueryError(f"channel: expected one of {known}, found {channel!r}")
+    seen = eye.pixels()
+    shown = np.ones(len(seen.steps)) if channel == "sdf-steps" else np.isfinite(seen.distances)
+    colors = np.column_stack([_COLORS[channel](eye, seen), shown]) * shown[:, None]
+    return colors.astype(np.float32).reshape(eye.size, eye.size, 4)
+
+
+def _normal(eye: Eye, seen: Samples) -> Floats:
+    """World axes: red to +x, green to +y, blue to +z; a half is 0."""
+    return np.float32(0.5) * (seen.normals + 1)
+
+
+def _uv(eye: Eye, seen: Samples) -> Floats:
+    """Red is u, green is v; tiles look alike."""
+    return np.column_stack([seen.uvs % 1, np.zeros(len(seen.uvs), np.float32)])
+
+
+def _chart(eye: Eye, seen: Samples) -> Floats:
+    phase = seen.charts[:, None] * GOLDEN + np.arange(3) / 3
+    colors: Floats = (0.55 + 0.4 * np.cos(2 * np.pi * phase)).astype(np.float32)
+    return colors
+
+
+def _depth(eye: Eye, seen: Samples) -> Floats:
+    """White where the unit ball begins, black where it ends."""
+    nearest = np.linalg.norm(eye.camera.eye) - 1
+    grey = 1 - np.clip(np.nan_to_num(seen.distances - nearest, posinf=0) / 2, 0, 1)
+    return np.repeat(grey[:, None], 3, axis=1).astype(np.float32)
+
+
+def _steps(eye: Eye, seen: Samples) -> Floats:
+    """Black through red and yellow to white: how often the network was asked, up to MANY_STEPS."""
+    share = seen.steps[:, None] / MANY_STEPS
+    heat: Floats = np.clip(3 * share - np.arange(3), 0, 1).astype(np.float32)
+    return heat
+
+
+_COLORS: dict[str, Callable[[Eye, Samples], Floats]] = {
+    "normal": _normal,
+    "uv": _uv,
+    "chart": _chart,
+    "depth": _depth,
+    "sdf-steps": _steps,
+}
+CHANNELS = ("color", *_COLORS)

@@ -1,0 +1,51 @@
+"""Where two pictures differ, how much, and what to look at more closely."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from scipy.ndimage import uniform_filter
+
+from nispcodec.render.camera import Camera
+from nispcodec.render.fragments import Floats, Scene
+
+# A difference of this, of a channel's whole range, is black.
+SCALE = 0.25
+ZOOM = 6.0
+# Differences are judged over windows of this share of the picture, so that outlines weigh little.
+WINDOW = 0.04
+
+
+def difference(first: Floats, second: Floats) -> Floats:
+    """(h, w) float32: the largest difference of a channel of two pictures (h, w, 3)."""
+    largest: Floats = np.abs(first - second).max(axis=2)
+    return largest
+
+
+def heat(values: Floats) -> Floats:
+    """(..., 3) float32 for values (...): white at 0, through yellow and red to black at SCALE."""
+    share = values[..., None] / SCALE
+    colors: Floats = 1 - np.clip(3 * share - np.array([2, 1, 0]), 0, 1)
+    return colors.astype(np.float32)
+
+
+def close_ups(
+    scene: Scene, views: list[Camera], differences: list[Floats], count: int
+) -> list[Camera]:
+    """Cameras on the places of largest difference, no two of them in the same view."""
+    smooth = [uniform_filter(each, max(3, round(WINDOW * len(each)))) for each in differences]
+    worst = sorted(range(len(views)), key=lambda i: -float(smooth[i].max()))[:count]
+    return [_on(scene, views[i], smooth[i]) for i in worst]
+
+
+def _on(scene: Scene, view: Camera, smooth: Floats) -> Camera:
+    """The camera turned to the brightest place, nearer by ZOOM."""
+    row, column = np.unravel_index(int(smooth.argmax()), smooth.shape)
+    place = (np.array([each + 0.5]) / len(smooth) for each in (column, row))
+    direction = view.directions(*place)
+    found = scene.cast(view.eye[None].astype(np.float32), direction, 0).fragments.distances
+    # Beside the surface: what is in the plane of the middle.
+    middle = float(np.linalg.norm(view.eye)) / float(-direction[0] @ view.axes[2])
+    target = view.eye + (float(found[0]) if len(found) else middle) * direction[0]
+    return replace(view, target=tuple(target.tolist()), zoom=ZOOM)
