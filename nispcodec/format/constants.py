@@ -11,21 +11,28 @@ MAJOR = 1
 MINOR = 0
 
 HEADER_SIZE = 16
-ENTRY_SIZE = 24
+ENTRY_SIZE = 22
 CRITICAL = 1
-QUANTISED = 0x80
-SHORT_STEP = 0x40
 
-INFO = "INFO"
 META = "META"
 NETS = "NETS"
 TXTR = "TXTR"
-CRITICAL_SECTIONS = (META, NETS, TXTR)
-KNOWN_SECTIONS = (INFO, META, NETS, TXTR)
+SECTIONS = (META, NETS, TXTR)
 
 PACKINGS = ("raw", "zstd")
 NETWORKS = ("sdf", "chart", "uv")
 CODINGS = ("dense", "coo", "csc", "csr", "dia", "entropy")
+MEASURES = (
+    "preset",
+    "seed",
+    "hidden_share",
+    "sheet_share",
+    "distance_error",
+    "chart_accuracy",
+    "uv_error_median",
+    "uv_error_mean",
+)
+STEPS = ("byte", "float16", "float32", "same")
 NUMBERS = ("float32", "float16", "int8", "int16", "int32")
 
 MAX_SECTIONS = 64
@@ -39,7 +46,5 @@ MAX_TEXT = 1024
 MAX_WEIGHTS = 2**20
 MAX_MEMORY = 96 * 2**20
 MAX_SYMBOL = 2**23 - 1
-MAX_TOKENS = 62
-
-# Relative frequencies of tokens in half-octave steps: four bits say them within 20 percent.
-LEVELS = (0, 1, 2, 3, 4, 6, 8, 11, 16, 23, 32, 45, 64, 91, 128, 181)
+MAX_CELLS = 256
+MAX_JOINED = 3

@@ -25,7 +25,7 @@ from nispcodec.format.constants import (
 )
 
 _HEADER = struct.Struct("<8sBBHI")
-_ENTRY = struct.Struct("<4sHHIIII")
+_ENTRY = struct.Struct("<4sBBIIII")
 _CODE = re.compile(rb"[A-Z0-9]{4}")
 _ZSTD_LEVEL = 19
 _ZSTD_LEVEL_LARGE = 3

@@ -8,14 +8,10 @@ from dataclasses import dataclass
 from nispcodec.asset import Texture
 from nispcodec.document import Document
 from nispcodec.errors import FormatError
-from nispcodec.format import canonical, metadata, weights
-from nispcodec.format.constants import CRITICAL_SECTIONS, INFO, KNOWN_SECTIONS, META, NETS, TXTR
+from nispcodec.format import metadata, weights
+from nispcodec.format.constants import META, NETS, SECTIONS, TXTR
 from nispcodec.format.container import Entry, content, read_container, write_container
 from nispcodec.format.record import located
-
-Scalar = str | int | float | bool
-_SCALARS = (str, int, float, bool)
-_PLAIN = "a map from text to text, numbers and bools"
 
 
 @dataclass(frozen=True)
@@ -36,7 +32,7 @@ def pack(document: Document, coding: str | None = None) -> bytes:
 
     The same document gives the same bytes. Raises `FormatError` for a document beyond the caps.
     """
-    if known := sorted(set(document.extra) & set(KNOWN_SECTIONS)):
+    if known := sorted(set(document.extra) & set(SECTIONS)):
         raise FormatError(known[0], "extra", "a code unknown to this version", known[0])
     sections = [
         (META, True, metadata.encode(document)),
@@ -45,8 +41,6 @@ def pack(document: Document, coding: str | None = None) -> bytes:
     ]
     if document.textures:
         sections.append((TXTR, True, b"".join(texture.data for texture in document.textures)))
-    if document.info:
-        sections.append((INFO, False, _encode_info(document.info)))
     return write_container(sections)
 
 
@@ -83,8 +77,7 @@ def _parse(data: bytes) -> tuple[Document, dict[str, Entry], dict[str, int]]:
     meta = metadata.decode(_required(entries, META))
     networks, lengths = weights.decode(meta.specs, _required(entries, NETS))
     textures = _read_textures(meta, entries)
-    info = _read_info(entries)
-    unknown = {code: entry for code, entry in entries.items() if code not in KNOWN_SECTIONS}
+    unknown = {code: entry for code, entry in entries.items() if code not in SECTIONS}
     with located(META, "document"):
         document = Document(
             frame=meta.frame,
@@ -95,7 +88,7 @@ def _parse(data: bytes) -> tuple[Document, dict[str, Entry], dict[str, int]]:
             chart=networks.get("chart"),
             uv=networks.get("uv"),
             shell=meta.shell,
-            info=info,
+            info=meta.info,
             extra={code: bytes(content(entry)) for code, entry in unknown.items()},
         )
     return document, entries, lengths
@@ -103,9 +96,9 @@ def _parse(data: bytes) -> tuple[Document, dict[str, Entry], dict[str, int]]:
 
 def _by_code(entries: list[Entry]) -> dict[str, Entry]:
     for entry in entries:
-        known = entry.code in CRITICAL_SECTIONS
+        known = entry.code in SECTIONS
         if entry.critical and not known:
-            expected = f"a critical section of {', '.join(CRITICAL_SECTIONS)}"
+            expected = f"a critical section of {', '.join(SECTIONS)}"
             raise FormatError(entry.code, "section code", expected, entry.code)
         if known and not entry.critical:
             raise FormatError(entry.code, "flags", "critical", "ancillary")
@@ -131,22 +124,3 @@ def _read_textures(meta: metadata.Metadata, entries: Mapping[str, Entry]) -> tup
         textures.append(Texture(name, bytes(data[start : start + length]), mime))
         start += length
     return tuple(textures)
-
-
-def _encode_info(info: Mapping[str, Scalar]) -> bytes:
-    plain = all(isinstance(value, _SCALARS) for value in info.values())
-    if not plain or not all(isinstance(key, str) for key in info):
-        raise FormatError(INFO, "info", _PLAIN, "another type")
-    return canonical.encode(INFO, dict(info))
-
-
-def _read_info(entries: Mapping[str, Entry]) -> dict[str, Scalar]:
-    if INFO not in entries:
-        return {}
-    info = canonical.decode(INFO, content(entries[INFO]))
-    if not isinstance(info, dict) or not info:
-        raise FormatError(INFO, "info", "a map that is not empty", type(info).__name__)
-    for key, value in info.items():
-        if type(key) is not str or type(value) not in _SCALARS:
-            raise FormatError(INFO, "info", _PLAIN, f"{type(key).__name__}: {type(value).__name__}")
-    return info

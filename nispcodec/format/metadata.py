@@ -1,7 +1,8 @@
-"""The META section: everything of a document but the weights, the images and the measurements."""
+"""The META section: everything of a document but the weights and the images."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -9,7 +10,7 @@ import numpy as np
 
 from nispcodec.asset import Material
 from nispcodec.document import ChartTable, Document, Frame
-from nispcodec.format import canonical, topology
+from nispcodec.format import canonical, measures, topology
 from nispcodec.format.constants import META
 from nispcodec.format.materials import (
     decode_material,
@@ -33,6 +34,7 @@ class Metadata:
     textures: tuple[tuple[str, str, int], ...]
     specs: dict[str, NetworkSpec]
     shell: float
+    info: Mapping[str, measures.Scalar]
 
 
 def encode(document: Document) -> bytes:
@@ -49,6 +51,7 @@ def encode(document: Document) -> bytes:
         7: ([encode_material(material) for material in document.materials], [{}]),
         8: ([encode_texture(texture) for texture in document.textures], []),
         9: (float(document.shell), 0.0),
+        10: (measures.encode(document.info), {}),
     }
     return canonical.encode(META, sparse(fields))
 
@@ -74,6 +77,7 @@ def decode(data: bytes | memoryview) -> Metadata:
         textures=textures,
         specs=topology.decode(networks, count),
         shell=record.take(9, "shell", float, 0.0),
+        info=measures.decode(record.take(10, "info", dict, {})),
     )
     record.finish()
     return metadata

@@ -1,43 +1,20 @@
-"""The NETS section: the tensors of all networks, each in its own coding."""
+"""The NETS section: the records of all networks' tensors, then one rANS stream."""
 
 from __future__ import annotations
 
-import struct
-from collections.abc import Iterator
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from nispcodec.errors import FormatError
-from nispcodec.format.codings import coo, csc, csr, dense, dia, entropy
+from nispcodec.format import records
+from nispcodec.format.codings import entropy
 from nispcodec.format.codings.reader import Reader
-from nispcodec.format.constants import (
-    CODINGS,
-    MAX_SYMBOL,
-    MAX_UNPACKED,
-    MAX_WEIGHTS,
-    NETS,
-    QUANTISED,
-    SHORT_STEP,
-)
+from nispcodec.format.constants import CODINGS, MAX_SYMBOL, MAX_UNPACKED, MAX_WEIGHTS, NETS
 from nispcodec.format.container import pack_content
+from nispcodec.format.records import Part, Record
 from nispcodec.network import Network, NetworkSpec, Weights
-
-_OWN = {"dense": dense, "coo": coo, "csc": csc, "csr": csr, "dia": dia}
-
-
-@dataclass(frozen=True)
-class _Tensor:
-    """A tensor to write: what its tag says besides the coding, its step, its values in 2-D."""
-
-    mark: int
-    step: bytes
-    matrix: NDArray[Any]
-
-    def record(self, coding: str, payload: bytes) -> bytes:
-        return bytes([self.mark | 1 + CODINGS.index(coding)]) + self.step + payload
 
 
 def encode(networks: dict[str, Network], coding: str | None) -> bytes:
@@ -45,27 +22,47 @@ def encode(networks: dict[str, Network], coding: str | None) -> bytes:
     if coding is not None and coding not in CODINGS:
         raise FormatError(NETS, "coding", f"one of {', '.join(CODINGS)}", coding)
     _check_count([network.spec for network in networks.values()])
-    prepared = [_prepare_network(name, network) for name, network in networks.items()]
-    if coding is not None:
-        return _section(prepared, [[coding] * len(tensors) for tensors in prepared])
+    prepared = [records.candidates(name, network) for name, network in networks.items()]
     # The section is packed as a whole, so that the best for each tensor may not be the best of all.
-    choices = [*_choices(prepared), *([[name] * len(t) for t in prepared] for name in CODINGS)]
-    return min((_section(prepared, choice) for choice in choices), key=_packed_length)
+    choices = [(coding,)] if coding else [*((name,) for name in CODINGS), CODINGS[:-1], CODINGS]
+    sections = (
+        _section([record for each in prepared for record in records.cheapest(each, choice)])
+        for choice in choices
+    )
+    return min(sections, key=lambda section: len(pack_content(section, MAX_UNPACKED)[1]))
 
 
 def decode(
     specs: dict[str, NetworkSpec], data: bytes | memoryview
 ) -> tuple[dict[str, Network], dict[str, int]]:
-    """The networks of these specs, `MAX_WEIGHTS` weights at most, and the bytes of each."""
+    """The networks of these specs, `MAX_WEIGHTS` weights at most, and the bytes of each.
+
+    The stream is one for all networks: its bytes are split by the bits that each of them needs.
+    """
     _check_count(list(specs.values()))
     reader = Reader(NETS, data)
-    networks, lengths = {}, {}
+    read: dict[str, list[Part]] = {}
+    ends = [0]
     for name, spec in specs.items():
-        start = reader.position
-        networks[name] = _decode_network(reader, name, spec)
-        lengths[name] = reader.position - start
+        read[name] = records.read(reader, name, spec.shapes)
+        ends.append(reader.position)
+    heads = [part.head for parts in read.values() for part in parts if part.head]
+    coded = iter(entropy.decode(reader, heads))
     reader.finish()
-    return networks, lengths
+    networks, bits = {}, [0.0]
+    for name, spec in specs.items():
+        values = [next(coded) if part.values is None else (part.values, 0.0) for part in read[name]]
+        bits.append(sum(cost for _, cost in values))
+        flat = [each for each, _ in values]
+        networks[name] = _network(reader, name, spec, read[name], flat)
+    stream = (reader.position - ends[-1]) * np.cumsum(bits) / max(sum(bits), 1)
+    lengths = np.diff(ends) + np.diff(np.rint(stream).astype(int))
+    return networks, dict(zip(specs, map(int, lengths), strict=True))
+
+
+def _section(chosen: list[Record]) -> bytes:
+    runs = [record.run for record in chosen if record.run]
+    return b"".join(record.encode() for record in chosen) + entropy.encode(runs)
 
 
 def _check_count(specs: list[NetworkSpec]) -> None:
@@ -74,130 +71,30 @@ def _check_count(specs: list[NetworkSpec]) -> None:
         raise FormatError(NETS, "weights", f"at most {MAX_WEIGHTS}", total)
 
 
-def _choices(prepared: list[list[_Tensor]]) -> Iterator[list[list[str]]]:
-    """The best coding for each tensor: without the coding entropy, then with it."""
-    own = [[_best_own(tensor) for tensor in tensors] for tensors in prepared]
-    yield [[coding for coding, _ in best] for best in own]
-    pooled = [entropy.Pool([t.matrix.ravel() for t in tensors]).sizes() for tensors in prepared]
-    yield [
-        [
-            coding if size <= pool_size else "entropy"
-            for (coding, size), pool_size in zip(best, sizes, strict=True)
-        ]
-        for best, sizes in zip(own, pooled, strict=True)
-    ]
-
-
-def _section(prepared: list[list[_Tensor]], codings: list[list[str]]) -> bytes:
-    return b"".join(map(_assemble, prepared, codings))
-
-
-def _prepare_network(name: str, network: Network) -> list[_Tensor]:
-    return [
-        _prepare(f"{name}.{key}", tensor, network.steps.get(key))
-        for key, tensor in network.tensors.items()
-    ]
-
-
-def _prepare(path: str, tensor: Weights, step: float | None) -> _Tensor:
-    shape = _matrix_shape(tensor.shape)
-    if step is None:
-        return _Tensor(0, b"", (tensor + np.float32(0)).reshape(shape))  # adding 0 makes -0 a 0
-    symbols = _symbols(path, tensor, step).reshape(shape)
-    short = float(np.float16(step)) == float(np.float32(step))
-    mark = QUANTISED | SHORT_STEP if short else QUANTISED
-    return _Tensor(mark, struct.pack("<e" if short else "<f", step), symbols)
-
-
-def _best_own(tensor: _Tensor) -> tuple[str, int]:
-    """The coding of its own, without a pool, that takes the fewest bytes, and how many."""
-    lengths = {name: _packed_length(coder.encode(tensor.matrix)) for name, coder in _OWN.items()}
-    best = min(lengths, key=lambda name: lengths[name])
-    return best, lengths[best]
-
-
-def _packed_length(payload: bytes) -> int:
-    """What the payload would take in the file."""
-    return len(pack_content(payload, MAX_UNPACKED)[1])
-
-
-def _assemble(tensors: list[_Tensor], codings: list[str]) -> bytes:
-    chosen = [tensor for tensor, name in zip(tensors, codings, strict=True) if name == "entropy"]
-    pool = entropy.Pool([tensor.matrix.ravel() for tensor in chosen]) if chosen else None
-    heads = iter(pool.heads() if pool else [])
-    records = [
-        tensor.record(name, next(heads) if name == "entropy" else _OWN[name].encode(tensor.matrix))
-        for tensor, name in zip(tensors, codings, strict=True)
-    ]
-    return b"".join(records) + (pool.encode() if pool else b"")
-
-
-def _decode_network(reader: Reader, name: str, spec: NetworkSpec) -> Network:
-    values: dict[str, NDArray[Any]] = {}
-    heads: dict[str, entropy.Head] = {}
-    steps: dict[str, float] = {}
-    for key, shape in spec.shapes.items():
-        reader.path = f"{name}.{key}."
-        coding, step = _read_tag(reader)
-        if step is not None:
-            steps[key] = step
-        if coding == "entropy":
-            heads[key] = entropy.read_head(reader, int(np.prod(shape)), step is not None)
-        else:
-            values[key] = _OWN[coding].decode(reader, _matrix_shape(shape), step is not None)
-    reader.path = f"{name}."
-    if heads:
-        values |= zip(heads, entropy.decode(reader, list(heads.values())), strict=True)
-    tensors = {
-        key: _scale(reader, key, values[key], steps.get(key)).reshape(shape)
-        for key, shape in spec.shapes.items()
-    }
-    reader.path = ""
+def _network(
+    reader: Reader, name: str, spec: NetworkSpec, parts: list[Part], values: list[NDArray[Any]]
+) -> Network:
+    tensors, steps = {}, {}
+    for part, flat in zip(parts, values, strict=True):
+        shapes = [spec.shapes[key] for key in part.names]
+        ends = np.cumsum([int(np.prod(shape)) for shape in shapes])[:-1]
+        for key, shape, each in zip(part.names, shapes, np.split(flat, ends), strict=True):
+            tensors[key] = _scale(reader, f"{name}.{key}", each, part.step).reshape(shape)
+            if part.step is not None:
+                steps[key] = part.step
     return Network(spec, tensors, steps)
 
 
-def _read_tag(reader: Reader) -> tuple[str, float | None]:
-    """Coding and step of the next tensor."""
-    tag = reader.take(1, "coding")[0]
-    quantised, short = bool(tag & QUANTISED), bool(tag & SHORT_STEP)
-    number = tag & ~(QUANTISED | SHORT_STEP)
-    if not 1 <= number <= len(CODINGS):
-        raise reader.error("coding", f"1 to {len(CODINGS)}", number)
-    if short and not quantised:
-        raise reader.error("coding", "no step width without a step", tag)
-    if not quantised:
-        return CODINGS[number - 1], None
-    step = float(struct.unpack("<e" if short else "<f", reader.take(2 if short else 4, "step"))[0])
-    if not 0 < step < np.inf:
-        raise reader.error("step", "a positive number", step)
-    return CODINGS[number - 1], step
-
-
-def _scale(reader: Reader, key: str, values: NDArray[Any], step: float | None) -> Weights:
-    scaled = values if step is None else _multiplied(reader, key, values, step)
+def _scale(reader: Reader, path: str, values: NDArray[Any], step: float | None) -> Weights:
+    scaled = values if step is None else _multiplied(reader, path, values, step)
     if not np.isfinite(scaled).all():
-        raise reader.error(key, "finite weights", "NaN or infinity")
+        raise reader.error(path, "finite weights", "NaN or infinity")
     return np.ascontiguousarray(scaled)
 
 
-def _multiplied(reader: Reader, key: str, symbols: NDArray[Any], step: float) -> Weights:
+def _multiplied(reader: Reader, path: str, symbols: NDArray[Any], step: float) -> Weights:
     largest = max(int(symbols.max()), -int(symbols.min()))
     if largest > MAX_SYMBOL:
-        raise reader.error(key, f"symbols up to {MAX_SYMBOL}", largest)
+        raise reader.error(path, f"symbols up to {MAX_SYMBOL}", largest)
     with np.errstate(over="ignore"):
         return symbols.astype(np.float32) * np.float32(step)
-
-
-def _matrix_shape(shape: tuple[int, ...]) -> tuple[int, int]:
-    """A bias is one row."""
-    return (1, shape[0]) if len(shape) == 1 else (shape[0], shape[1])
-
-
-def _symbols(path: str, tensor: Weights, step: float) -> NDArray[np.int32]:
-    single = np.float32(step)
-    if not 0 < single < np.inf:
-        raise FormatError(NETS, f"{path}.step", "a positive float32", step)
-    symbols = np.rint(tensor.astype(np.float64) / np.float64(single))
-    if np.abs(symbols).max() > MAX_SYMBOL or (symbols.astype(np.float32) * single != tensor).any():
-        raise FormatError(NETS, path, f"multiples of the step {step}", "other weights")
-    return symbols.astype(np.int32)

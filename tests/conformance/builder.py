@@ -24,7 +24,7 @@ class Row:
     checksum: int | None = None
 
     def entry(self, position: int) -> bytes:
-        """The 24 bytes of the table."""
+        """The 22 bytes of the table."""
         size = len(self.payload)
         claims = (
             (self.offset, position),
@@ -33,7 +33,7 @@ class Row:
             (self.checksum, zlib.crc32(self.payload)),
         )
         numbers = [truth if claim is None else claim for claim, truth in claims]
-        return struct.pack("<4sHHIIII", self.code, self.flags, self.packing, *numbers)
+        return struct.pack("<4sBBIIII", self.code, self.flags, self.packing, *numbers)
 
 
 def container(
@@ -45,7 +45,7 @@ def container(
     checksum: int | None = None,
 ) -> bytes:
     """The file with these rows, in this order."""
-    position = 16 + 24 * len(rows)
+    position = 16 + 22 * len(rows)
     table = b""
     for row in rows:
         table += row.entry(position)

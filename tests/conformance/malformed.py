@@ -11,8 +11,10 @@ from collections.abc import Iterator
 from typing import Any, NamedTuple
 
 import msgpack
+import numpy as np
 import zstandard
 
+from nispcodec.format.codings import entropy
 from tests.conformance.builder import Row, change, container
 
 
@@ -134,10 +136,6 @@ def _sections() -> Iterator[Malformed]:
     yield Malformed("txtr-missing", container(textured), "TXTR", "section")
     short = [*textured, Row(b"TXTR", b"1234")]
     yield Malformed("txtr-too-short", container(short), "TXTR", "length")
-    info = {"empty": b"\x80", "key": b"\x81\x01\x01", "value": b"\x81\xa1a\x90", "list": b"\x90"}
-    for name, data in info.items():
-        file = container([Row(b"INFO", data, flags=0), *two])
-        yield Malformed(f"info-{name}", file, "INFO", "info")
 
 
 def _packings() -> Iterator[Malformed]:
@@ -215,6 +213,13 @@ def _fields() -> Iterator[Malformed]:
         "chart-has-uv-default": ({5: b"\x80"}, "document.chart_has_uv"),
         "uv-map-default": ({6: [0.0, 0.0, 1.0, 1.0]}, "document.uv_map"),
         "shell-integer": ({9: 1}, "document.shell"),
+        "info-empty": ({10: {}}, "document.info"),
+        "info-list": ({10: [1]}, "document.info"),
+        "info-key-reserved": ({10: {0: 1}}, "document.info.0"),
+        "info-key-unknown": ({10: {9: 1}}, "document.info.9"),
+        "info-key-by-name": ({10: {"seed": 1}}, "document.info.seed"),
+        "info-key-bool": ({10: {True: 1}}, "document.info.True"),
+        "info-value": ({10: {1: [1]}}, "document.info.1"),
     }
     specs: dict[str, tuple[dict[int, Any], str]] = {
         "hidden-missing": ({}, "hidden"),
@@ -285,18 +290,20 @@ def _relations() -> Iterator[Malformed]:
 
 def _tensors() -> Iterator[Malformed]:
     infinite = b"\x01\x02" + struct.pack("<6e", *[float("inf")] * 6)
-    large = b"\x81\0\0\0\x3f\x05" + struct.pack("<6i", *[-(2**31)] * 6)
-    overflow = b"\x81" + struct.pack("<f", 3e38) + b"\x03" + b"\x7f" * 6
+    large = b"\x19\0\0\0\x3f\x05" + struct.pack("<6i", *[-(2**31)] * 6)
+    overflow = b"\x19" + struct.pack("<f", 3e38) + b"\x03" + b"\x7f" * 6
     cases = {
         "coding-reserved": (b"\0" + dense(6)[1:], "coding"),
         "coding-unknown": (b"\x07" + dense(6)[1:], "coding"),
-        "coding-short-step-alone": (b"\x41" + dense(6)[1:], "coding"),
+        "joined-dense": (b"\x41" + dense(6)[1:], "joined"),
         "number-kind-reserved": (b"\x01\0" + bytes(12), "number kind"),
         "number-kind-of-symbols": (b"\x01\x03" + bytes(6), "number kind"),
-        "number-kind-of-floats": (b"\x81\0\0\0\x3f\x02" + bytes(12), "number kind"),
-        "step-zero": (b"\x81\0\0\0\0\x03" + bytes(6), "step"),
-        "step-negative": (b"\x81" + struct.pack("<f", -1) + b"\x03" + bytes(6), "step"),
-        "step-nan": (b"\xc1" + struct.pack("<e", float("nan")) + b"\x03" + bytes(6), "step"),
+        "number-kind-of-floats": (b"\x19\0\0\0\x3f\x02" + bytes(12), "number kind"),
+        "step-zero": (b"\x19\0\0\0\0\x03" + bytes(6), "step"),
+        "step-negative": (b"\x19" + struct.pack("<f", -1) + b"\x03" + bytes(6), "step"),
+        "step-nan": (b"\x11" + struct.pack("<e", float("nan")) + b"\x03" + bytes(6), "step"),
+        "step-unknown": (b"\x29\0\x03" + bytes(6), "step"),
+        "step-same-as-none": (b"\x21\x03" + bytes(6), "step"),
     }
     for name, (tensor, field) in cases.items():
         file = container(rows(None, nets(tensor)))
@@ -336,31 +343,43 @@ def _sparse() -> Iterator[Malformed]:
 
 
 def _entropy() -> Iterator[Malformed]:
-    """A pool for the first tensor only: symbols, one table, tokens 0 and 1 equally frequent."""
-    tensor = b"\x86" + struct.pack("<f", 0.5) + b"\0"
-    table = b"\x01\x02\x11"
-    state = b"\x02\x01\0\0\0"
+    """The first tensor symbols in the coding entropy, with a good head and stream to break."""
+    small = entropy.Run(np.array([1, 0, 0, -1, 0, 1], np.int32))
+    large = entropy.Run(np.array([516, 0, 3, -9, 0, 1], np.int32))
+    head, stream = small.head(), entropy.encode([small])
+    wide, wide_stream = large.head(), entropy.encode([large])
+    yield from _heads()
     cases = {
-        "pool-cut": (b"", "sdf.table count"),
-        "pool-table-count": (b"\x02" + table[1:] * 2, "sdf.table count"),
-        "pool-token-count": (b"\x01\0", "sdf.token count"),
-        "pool-tokens-many": (b"\x01\x3f", "sdf.token count"),
-        "pool-last-level": (b"\x01\x02\x10", "sdf.levels"),
-        "pool-levels-tail": (b"\x01\x01\x11", "sdf.levels"),
-        "pool-words-one": (table + b"\x01\0\0", "sdf.words"),
-        "pool-words-many": (table + b"\x09", "sdf.word count"),
-        "pool-words-few": (table + b"\x02\0\0\0\0", "sdf.words"),
-        "pool-final-state": (table + b"\x02\x02\0\0\0", "sdf.words"),
-        "pool-words-left": (b"\x01\x01\x10\x03\x01\0\0\0\0\0", "sdf.final state"),
-        "pool-state-low": (b"\x01\x01\x10\x02\0\0\x01\0", "sdf.words"),
-        "pool-signs-cut": (b"\x01\x02\x01" + state, "sdf.signs"),
-        "pool-signs-tail": (b"\x01\x02\x01" + state + b"\x01", "sdf.signs"),
-        "pool-magnitude": (b"\x01\x2d" + b"\0" * 22 + b"\x10" + state, "sdf.signs"),
+        "stream-missing": (head, b"", "words"),
+        "stream-half-a-state": (head, stream[:2], "words"),
+        "stream-cut": (wide, wide_stream[:4], "words"),
+        "stream-final-state": (head, b"\0\x40" + stream[2:], "final state"),
+        "stream-too-long": (head, stream + b"\0\0", "end"),
+        "stream-odd": (head, stream + b"\0", "end"),
+        "open-bits-cut": (wide, wide_stream[:-1], "open bits"),
+        "magnitude-above-limit": (b"\x81\x04" + wide[2:], wide_stream, "magnitude"),
     }
-    tail = nets(b"")
-    for name, (pool, field) in cases.items():
-        yield Malformed(name, container(rows(None, tensor + tail + pool)), "NETS", field)
-    for name, head in {"top-large": b"\x06\x02\x80\xf8\x01\0", "top-kind": b"\x06\x03\0"}.items():
-        field = {"top-large": "top", "top-kind": "number kind"}[name]
-        file = container(rows(None, head + tail))
+    for name, (start, end, field) in cases.items():
+        first = b"\x1e" + struct.pack("<f", 0.5) + start
+        yield Malformed(name, container(rows(None, nets(first, end))), "NETS", field)
+    three = entropy.Run(np.array([300, 300, 300, 0, 0, 0], np.int32))
+    tail = entropy.encode([three])
+    first = b"\x1e" + struct.pack("<f", 0.5) + three.head()
+    tail = tail[:-1] + bytes([tail[-1] | 1])
+    yield Malformed("open-bits-tail", container(rows(None, nets(first, tail))), "NETS", "open bits")
+
+
+def _heads() -> Iterator[Malformed]:
+    step = struct.pack("<f", 0.5)
+    cases = {
+        "top-kind": (b"\x06\x03", "number kind"),
+        "top-large": (b"\x06\x02\x80\xf8\x01\0", "top"),
+        "limit-above-top": (b"\x06\x02\x05\x06", "limit"),
+        "limit-large": (b"\x1e" + step + b"\x80\x80\x80\x04", "limit"),
+        "zeros-none": (b"\x1e" + step + b"\x01\x80\0", "zeros"),
+    }
+    for name, (tensor, field) in cases.items():
+        file = container(rows(None, nets(tensor)))
         yield Malformed(name, file, "NETS", f"sdf.weight.0.{field}")
+    joined = b"".join(dense(count) for count in TENSOR_SIZES[:-1]) + b"\x5e" + step + b"\0"
+    yield Malformed("joined-many", container(rows(None, joined)), "NETS", "sdf.bias.1.joined")

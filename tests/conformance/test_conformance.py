@@ -80,13 +80,11 @@ def spec_weights(path: Path) -> dict[str, list[list[float]]]:
     """The tensors of every network, by the specification's decoder."""
     data = path.read_bytes()
     nets = next(entry for entry in read_container(data) if entry.code == "NETS")
-    reader = DECODER["Reader"](bytes(content(nets)))
-    weights = {}
-    for name, each in unpack(data).networks.items():
-        shapes = [(1, *shape)[-2:] for shape in each.spec.shapes.values()]
-        weights[name] = DECODER["read_network"](reader, shapes)
-    assert reader.at == len(reader.data)
-    return weights
+    networks = unpack(data).networks
+    shapes = [
+        [(1, *shape)[-2:] for shape in each.spec.shapes.values()] for each in networks.values()
+    ]
+    return dict(zip(networks, DECODER["read_nets"](bytes(content(nets)), shapes), strict=True))
 
 
 @each_file

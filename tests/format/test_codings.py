@@ -11,10 +11,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 
-from nispcodec.format.codings import bits, coo, csc, csr, dense, dia, entropy, rans, tables, tokens
+from nispcodec.format.codings import bits, coo, csc, csr, curve, dense, dia, entropy, rans
 from nispcodec.format.codings.reader import Reader, varint
-from nispcodec.format.constants import LEVELS, MAX_SYMBOL, MAX_TOKENS
-from nispcodec.format.container import write_container
+from nispcodec.format.constants import MAX_CELLS, MAX_SYMBOL
 
 OWN = {"dense": dense, "coo": coo, "csc": csc, "csr": csr, "dia": dia}
 FLOATS = st.floats(width=32, allow_nan=False, allow_infinity=False).map(lambda x: x + 0.0)
@@ -39,27 +38,38 @@ def through(coding: ModuleType, matrix: np.ndarray[Any, Any]) -> np.ndarray[Any,
     return np.asarray(decoded)
 
 
-def pooled(matrices_: list[np.ndarray[Any, Any]]) -> list[np.ndarray[Any, Any]]:
-    """The matrices through one pool of the coding entropy."""
-    pool = entropy.Pool([matrix.ravel() for matrix in matrices_])
-    reader = Reader("NETS", b"".join(pool.heads()) + pool.encode())
-    heads = [entropy.read_head(reader, each.size, each.dtype.kind == "i") for each in matrices_]
-    decoded = entropy.decode(reader, heads)
+def streamed(values: list[np.ndarray[Any, Any]]) -> list[np.ndarray[Any, Any]]:
+    """Runs of the coding entropy through one stream."""
+    runs = [entropy.Run(each) for each in values]
+    reader = Reader("NETS", b"".join(run.head() for run in runs) + entropy.encode(runs))
+    heads = [entropy.read_head(reader, each.size, each.dtype.kind == "i") for each in values]
+    decoded = [each for each, _ in entropy.decode(reader, heads)]
     reader.finish()
-    return [flat.reshape(each.shape) for flat, each in zip(decoded, matrices_, strict=True)]
+    return decoded
 
 
 @pytest.mark.parametrize("name", OWN)
 @given(matrix=matrices())
+@settings(deadline=None)
 def test_any_matrix(name: str, matrix: np.ndarray[Any, Any]) -> None:
     np.testing.assert_array_equal(through(OWN[name], matrix), matrix)
 
 
 @given(st.lists(matrices(), min_size=1, max_size=4))
 @settings(deadline=None)
-def test_any_pool(together: list[np.ndarray[Any, Any]]) -> None:
-    for decoded, matrix in zip(pooled(together), together, strict=True):
-        np.testing.assert_array_equal(decoded, matrix)
+def test_any_stream(together: list[np.ndarray[Any, Any]]) -> None:
+    runs = [matrix.ravel() for matrix in together]
+    for decoded, run in zip(streamed(runs), runs, strict=True):
+        np.testing.assert_array_equal(decoded, run)
+
+
+@pytest.mark.parametrize("extra", [-1, 0, 1, 5000])
+def test_long_streams_take_turns(extra: int) -> None:
+    generator = np.random.default_rng(0)
+    drawn = generator.normal(0, 20, rans.LONG + extra).round().astype(np.int32)
+    runs = [np.zeros(7, np.int32), drawn[:999], drawn[999:] * 40]
+    for decoded, run in zip(streamed(runs), runs, strict=True):
+        np.testing.assert_array_equal(decoded, run)
 
 
 @pytest.mark.parametrize("density", [0.0, 0.01, 1.0])
@@ -91,60 +101,60 @@ def test_numbers_take_the_smallest_kind() -> None:
     assert dense.encode(np.array([[0.1]], np.float32))[0] == 1
 
 
-@given(st.integers(0, 2**31 - 1))
-def test_tokens(magnitude: int) -> None:
-    token = tokens.from_magnitudes(np.array([magnitude], np.uint32))
-    start, width = int(tokens.smallest(token)[0]), int(tokens.extra_bits(token)[0])
-    assert start <= magnitude < start + 2**width
-    assert token[0] < MAX_TOKENS
+@given(st.integers(1, 2**31))
+def test_cells(limit: int) -> None:
+    cells, left_open = curve.cells(limit)
+    assert cells <= MAX_CELLS
+    assert (cells - 1) << left_open < limit <= cells << left_open
+    assert left_open == 0 or limit > MAX_CELLS << left_open - 1
 
 
-@given(st.lists(st.integers(0, 15), min_size=1, max_size=MAX_TOKENS).filter(any))
-def test_frequencies(levels: list[int]) -> None:
-    table = tables.frequencies(levels)
-    assert sum(table) == rans.SCALE
-    assert [frequency > 0 for frequency in table] == [level > 0 for level in levels]
-
-
-@given(hnp.arrays(np.int64, MAX_TOKENS, elements=st.integers(0, 10**6)).filter(np.any))
-def test_levels_hold_every_token_that_occurs(counts: np.ndarray[Any, Any]) -> None:
-    levels = tables.levels(counts)
-    assert [level > 0 for level in levels] == (counts[: len(levels)] > 0).tolist()
-    assert not counts[len(levels) :].any()
-    assert max(levels) == len(LEVELS) - 1
+@given(hnp.arrays(np.int64, st.integers(2, 257), elements=st.integers(0, 10**6)).filter(np.any))
+@settings(deadline=None)
+def test_the_curve_that_fits(counts: np.ndarray[Any, Any]) -> None:
+    best, claimed = curve.fit(counts)
+    bits_each = rans.SCALE_BITS - np.log2(np.diff(best.starts(len(counts) - 1)))
+    assert bits_each[len(counts) - 1 :] @ counts + 8 * (best.zeros > 0) == pytest.approx(claimed)
+    reader = Reader("NETS", best.encode())
+    assert curve.decode(reader) == best
+    reader.finish()
 
 
 @given(st.data())
 @settings(deadline=None)
 def test_rans(data: st.DataObject) -> None:
-    runs = []
+    tokens, runs = [], []
     for _ in range(data.draw(st.integers(1, 3))):
-        levels = data.draw(st.lists(st.integers(0, 15), min_size=1, max_size=9).filter(any))
-        known = [token for token, level in enumerate(levels) if level]
-        drawn = data.draw(st.lists(st.sampled_from(known), max_size=60))
-        runs.append((bytes(drawn), tables.frequencies(levels)))
-    reader = Reader("NETS", rans.encode(runs))
-    decoded = rans.decode(reader, [(len(run), table) for run, table in runs])
+        drawn = data.draw(st.lists(st.integers(0, 8), max_size=60))
+        tokens.append(np.array(drawn, np.int64))
+        runs.append((len(drawn), curve.Curve(data.draw(st.integers(0, 31)), 1, 0).starts(4)))
+    pairs = list(zip(tokens, [starts for _, starts in runs], strict=True))
+    starts = np.concatenate([starts[run] for run, starts in pairs])
+    frequencies = np.concatenate([np.diff(starts)[run] for run, starts in pairs])
+    reader = Reader("NETS", rans.encode(starts.tolist(), frequencies.tolist()))
+    np.testing.assert_array_equal(rans.decode(reader, runs), np.concatenate(tokens))
     reader.finish()
-    assert decoded == b"".join(run for run, _ in runs)
 
 
-def test_rans_is_as_short_as_the_entropy() -> None:
-    table = tables.frequencies([15, 8, 3])
-    share = np.array(table) / rans.SCALE
-    drawn = np.random.default_rng(0).choice(3, 20_000, p=share).astype(np.uint8)
-    ideal = -np.log2(share[drawn]).sum() / 8
-    assert ideal < len(rans.encode([(drawn.tobytes(), table)])) < ideal + 16
-
-
-def test_quantised_weights_cost_little_more_than_their_entropy() -> None:
-    """Whole file against the order-0 entropy of normal symbols, tables and all."""
-    symbols = np.rint(np.random.default_rng(0).normal(0, 20, 8000)).astype(np.int32)
+@pytest.mark.parametrize("spread", [0.3, 5, 20])
+@pytest.mark.parametrize("shape", ["normal", "laplace", "logistic"])
+def test_quantised_weights_cost_little_more_than_their_entropy(spread: float, shape: str) -> None:
+    drawn = getattr(np.random.default_rng(0), shape)(0, spread, 3000)
+    symbols = np.rint(drawn).astype(np.int32)
     _, counts = np.unique(symbols, return_counts=True)
     ideal = -(counts * np.log2(counts / counts.sum())).sum() / 8
-    pool = entropy.Pool([symbols])
-    assert len(pool.encode()) < 1.02 * ideal
-    assert len(write_container([("NETS", True, pool.encode())])) < 1.03 * ideal
+    run = entropy.Run(symbols)
+    stream = entropy.encode([run])
+    assert len(stream) < run.streamed() + 4
+    assert len(run.head()) + len(stream) < 1.03 * ideal + 8
+
+
+def test_pruned_symbols_cost_little_more_than_their_entropy() -> None:
+    generator = np.random.default_rng(0)
+    symbols = np.rint(generator.normal(0, 30, 3000) * (generator.random(3000) < 0.15))
+    _, counts = np.unique(symbols, return_counts=True)
+    ideal = -(counts * np.log2(counts / counts.sum())).sum() / 8
+    assert len(entropy.encode([entropy.Run(symbols.astype(np.int32))])) < 1.05 * ideal + 8
 
 
 @given(st.lists(st.tuples(st.integers(0, 2**32 - 1), st.integers(0, 32)), max_size=40))

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import tracemalloc
+from functools import cache
 
 import msgpack
+import numpy as np
 import pytest
 
 from nispcodec.errors import FormatError
 from nispcodec.format import unpack
+from nispcodec.format.codings import entropy
 from nispcodec.format.constants import MAX_MEMORY
 from tests.conformance.builder import Row, change, container
 from tests.conformance.malformed import all_malformed, meta, nets, rows, squeezed
@@ -21,19 +24,23 @@ def packed(code: bytes, data: bytes) -> Row:
     return Row(code, squeezed(data), packing=2, decoded=len(data))
 
 
+@cache
 def bombs() -> dict[str, bytes]:
     """Small files that unfold as far as the caps let them."""
     sizes = [(512, 3), (1, 512), (960, 512), (1, 960), (512, 960), (1, 512), (1, 512), (1, 1)]
     coo = b"\x02\0\x02" * 8
     dia = b"".join(_full_diagonals(*size) for size in sizes)
-    pool = b"\x86\0\0\0\x3f\0" * 6 + b"\x01\x01\x10\x02\x01\0\0\0"
+    few = np.zeros(512 * (3 + 1 + 512 + 1), np.int32)
+    few[0] = 1
+    zeros = entropy.Run(few)
+    endless = b"\xde\0\0\0\x3f" + zeros.head() + b"\x26\0" * 2 + entropy.encode([zeros])
     texture = meta({8: [{1: "a.png", 3: 2**25 - 2**20}]})
     crowd = bytes(msgpack.packb({1: [[b""] * 4000 for _ in range(4)]}))
     nested = b"\x81\x01" + b"\xdc\x10\x00" * 500
     return {
         "empty matrices": container(rows(LARGE, coo)),
         "full diagonals": container([rows(LARGE)[0], packed(b"NETS", dia)]),
-        "endless tokens": container(rows(meta({2: {1: {1: [256, 256]}}}), pool)),
+        "endless tokens": container(rows(meta({2: {1: {1: [512, 512]}}}), endless)),
         "large texture": container([*rows(texture), packed(b"TXTR", bytes(2**25 - 2**20))]),
         "metadata crowd": container([packed(b"META", crowd), rows()[1]]),
         "metadata lists": container(

@@ -49,8 +49,8 @@ def test_the_default_is_as_small_as_any_coding() -> None:
 def test_inspect_accounts_for_every_byte() -> None:
     data = pack(full())
     sections = inspect(data)
-    assert [section.code for section in sections] == ["INFO", "META", "NETS", "TXTR", "ZZZZ"]
-    assert sections[0].offset == 16 + 24 * len(sections)
+    assert [section.code for section in sections] == ["META", "NETS", "TXTR", "ZZZZ"]
+    assert sections[0].offset == 16 + 22 * len(sections)
     assert sections[0].offset + sum(section.stored_length for section in sections) == len(data)
     by_code = {section.code: section for section in sections}
     assert list(by_code["NETS"].parts) == ["sdf", "chart", "uv"]
@@ -95,7 +95,7 @@ def test_weights_that_are_no_multiples_of_their_step() -> None:
         ({"materials": (Material("a\nb"),)}, "materials.a\nb.name"),
         ({"materials": (Material(alpha_mode="glow"),)}, "materials.material.alpha_mode"),
         ({"materials": (Material(base_color=(np.nan, 0, 0, 0)),)}, "number"),
-        ({"info": {"a": [1]}}, "info"),
+        ({"info": {"a": [1]}}, "document.info.a"),
         ({"info": {"a": 2**64}}, "value"),
         ({"info": {"a": "\ud800"}}, "value"),
         ({"info": {"a": "x" * 2000}}, "text length"),

@@ -8,7 +8,7 @@ from __future__ import annotations
 import struct
 import zlib
 
-HEADER, ENTRY = 16, 24
+HEADER, ENTRY = 16, 22
 
 
 def repair(data: bytes) -> bytes:
@@ -24,13 +24,13 @@ def repair(data: bytes) -> bytes:
     table = b""
     for row in range(count):
         code, flags, packing, _, stored, decoded, _ = struct.unpack_from(
-            "<4sHHIIII", data, HEADER + ENTRY * row
+            "<4sBBIIII", data, HEADER + ENTRY * row
         )
         left = len(data) - offset
         stored = left if row == count - 1 else min(stored, left)
         decoded = stored if packing == 1 else decoded
         checksum = zlib.crc32(data[offset : offset + stored])
-        table += struct.pack("<4sHHIIII", code, flags, packing, offset, stored, decoded, checksum)
+        table += struct.pack("<4sBBIIII", code, flags, packing, offset, stored, decoded, checksum)
         offset += stored
     start = b"\x89NSP\r\n\x1a\n" + bytes([1, data[9], count, 0])
     head = start + struct.pack("<I", zlib.crc32(start + table))

@@ -1,7 +1,7 @@
-"""Entropy: the tensors of one network that take this coding share tables and one rANS stream.
+"""Entropy: runs of tensors under a curve each, all in one rANS stream at the end of the section.
 
-Sharing matters: a table and a stream for each of a network's small tensors would cost 4 percent.
-A tensor's own record is its head; the pool of them all follows the network's last tensor.
+A stream for each of the small tensors of a network would cost 2 percent, and tables of frequencies
+more than that. A run's own record is its head.
 """
 
 from __future__ import annotations
@@ -13,119 +13,132 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from nispcodec.format.codings import bits, rans, signed, tables, tokens
-from nispcodec.format.codings.reader import Reader
-from nispcodec.format.codings.tables import Counts
-from nispcodec.format.constants import MAX_SYMBOL, MAX_TOKENS
+from nispcodec.format.codings import bits, curve, rans, signed
+from nispcodec.format.codings.curve import Curve
+from nispcodec.format.codings.rans import Integers
+from nispcodec.format.codings.reader import Reader, varint
+from nispcodec.format.constants import MAX_SYMBOL
+
+
+class Run:
+    """Values to write under one curve: (n,) float32 weights or int32 symbols."""
+
+    def __init__(self, values: NDArray[Any]) -> None:
+        self._prefix, self._integers = signed.encode(values)
+        self._magnitudes = np.abs(self._integers)
+        self._limit = int(self._magnitudes.max())
+        self._cells, self._open = curve.cells(self._limit)
+
+    @cached_property
+    def _cell(self) -> Integers:
+        return np.where(self._magnitudes > 0, (self._magnitudes - 1 >> self._open) + 1, 0)
+
+    @cached_property
+    def _fitted(self) -> tuple[Curve, float]:
+        return curve.fit(np.bincount(self._cell, minlength=self._cells + 1))
+
+    def head(self) -> bytes:
+        """The record: what is needed to read the values."""
+        head = self._prefix + varint(self._limit)
+        return head + self._fitted[0].encode() if self._limit else head
+
+    def streamed(self) -> float:
+        """Bytes that the run takes in the stream."""
+        return self._fitted[1] / 8 + len(self.rest()) if self._limit else 0.0
+
+    def tokens(self) -> tuple[list[int], list[int]]:
+        """Start and frequency of every value's token."""
+        if not self._limit:
+            return [], []
+        starts = self._fitted[0].starts(self._cells)
+        token = self._cells + np.sign(self._integers) * self._cell
+        return starts[token].tolist(), np.diff(starts)[token].tolist()
+
+    def rest(self) -> bytes:
+        """What the tokens leave open of the values that are not zero."""
+        above = (self._magnitudes[self._magnitudes > 0] - 1).astype(np.uint32)
+        below = above & np.uint32((1 << self._open) - 1)
+        return bits.encode(below, np.full(len(below), self._open, np.uint8))
+
+
+def encode(runs: list[Run]) -> bytes:
+    """The stream: rANS words of all tokens, then what they leave open, run after run."""
+    starts: list[int] = []
+    frequencies: list[int] = []
+    for run in runs:
+        more_starts, more_frequencies = run.tokens()
+        starts += more_starts
+        frequencies += more_frequencies
+    return rans.encode(starts, frequencies) + b"".join(run.rest() for run in runs)
 
 
 @dataclass(frozen=True)
 class Head:
-    """A tensor's record: how many values of which kind (None: symbols), how large, which table."""
+    """A run's record: how many values of which kind (None: symbols), how large, which curve."""
 
     count: int
     kind: str | None
     top: int
-    table: int
+    limit: int
+    curve: Curve | None
 
-
-class Pool:
-    """The tensors to code together: (n,) arrays of float32 weights or int32 symbols."""
-
-    def __init__(self, tensors: list[NDArray[Any]]) -> None:
-        self._negative = [values < 0 for values in tensors]
-        self._heads, self._magnitudes = zip(*map(signed.encode, tensors), strict=True)
-        self._tokens = [tokens.from_magnitudes(magnitudes) for magnitudes in self._magnitudes]
+    @property
+    def coded(self) -> int:
+        """How many tokens of the stream are its."""
+        return self.count if self.limit else 0
 
     @cached_property
-    def _histograms(self) -> list[Counts]:
-        return [np.bincount(run, minlength=MAX_TOKENS) for run in self._tokens]
-
-    @cached_property
-    def _groups(self) -> list[list[int]]:
-        return tables.share(self._histograms)
-
-    @cached_property
-    def _tables(self) -> list[list[int]]:
-        return [
-            tables.levels(np.sum([self._histograms[i] for i in group], axis=0))
-            for group in self._groups
-        ]
-
-    @cached_property
-    def _table_of(self) -> dict[int, int]:
-        return {i: table for table, group in enumerate(self._groups) for i in group}
-
-    def heads(self) -> list[bytes]:
-        """The record of every tensor."""
-        return [head + bytes([self._table_of[i]]) for i, head in enumerate(self._heads)]
-
-    def sizes(self) -> list[float]:
-        """Bytes that each tensor takes, the common tables left out."""
-        return [
-            len(head) + (self._token_bits(i) + self._other_bits(i)) / 8
-            for i, head in enumerate(self.heads())
-        ]
-
-    def encode(self) -> bytes:
-        """Tables, rANS words, signs of what is not zero, extra bits: of all tensors."""
-        frequencies = [tables.frequencies(table) for table in self._tables]
-        runs = [
-            (run.tobytes(), frequencies[self._table_of[i]]) for i, run in enumerate(self._tokens)
-        ]
-        head = bytes([len(self._tables)]) + b"".join(map(tables.encode, self._tables))
-        magnitudes = np.concatenate(self._magnitudes)
-        signs = np.concatenate(self._negative)[magnitudes > 0].astype(np.uint32)
-        widths = tokens.extra_bits(np.concatenate(self._tokens))
-        rest = magnitudes & ((np.uint32(1) << widths) - np.uint32(1))
-        coded_signs = bits.encode(signs, np.ones(len(signs), np.uint8))
-        return head + rans.encode(runs) + coded_signs + bits.encode(rest, widths)
-
-    def _token_bits(self, i: int) -> float:
-        return tables.coded_bits(self._histograms[i], self._tables[self._table_of[i]])
-
-    def _other_bits(self, i: int) -> int:
-        signs = int(np.count_nonzero(self._magnitudes[i]))
-        return signs + int(tokens.extra_bits(self._tokens[i]).sum(dtype=np.int64))
+    def starts(self) -> Integers:
+        """Where the tokens' frequencies begin; one token, zero, without curve."""
+        if self.curve is None:
+            return np.array([0, rans.SCALE])
+        return self.curve.starts(curve.cells(self.limit)[0])
 
 
 def read_head(reader: Reader, count: int, symbols: bool) -> Head:
-    """A tensor's record."""
+    """A run's record."""
     kind, top = (None, MAX_SYMBOL) if symbols else signed.read_top(reader)
-    return Head(count, kind, top, reader.take(1, "table")[0])
+    limit = reader.varint("limit", top)
+    return Head(count, kind, top, limit, curve.decode(reader) if limit else None)
 
 
-def decode(reader: Reader, heads: list[Head]) -> list[NDArray[Any]]:
-    """The pool -> (n,) float32 weights or int32 symbols of every tensor."""
-    frequencies = _read_tables(reader, max(head.table for head in heads))
-    coded = rans.decode(reader, [(head.count, frequencies[head.table]) for head in heads])
-    all_tokens = np.frombuffer(coded, np.uint8)
-    nonzero = all_tokens > 0
-    negative = np.zeros(len(all_tokens), np.bool_)
-    negative[nonzero] = bits.decode(reader, "signs", np.ones(nonzero.sum(), np.uint8)) > 0
-    rest = bits.decode(reader, "extra bits", tokens.extra_bits(all_tokens))
-    magnitudes = tokens.smallest(all_tokens) + rest
-    ends = np.cumsum([head.count for head in heads])[:-1]
+def decode(reader: Reader, heads: list[Head]) -> list[tuple[NDArray[Any], float]]:
+    """The stream -> (n,) float32 weights or int32 symbols of every run, and how many bits it took.
+
+    The bits are those of an ideal coder.
+    """
+    tokens = rans.decode(reader, [(head.coded, head.starts) for head in heads])
+    ends = np.cumsum([head.coded for head in heads], dtype=np.int64)
+    parts = np.split(tokens, ends)[:-1]
     return [
-        _values(reader, head, *parts)
-        for head, *parts in zip(
-            heads, np.split(magnitudes, ends), np.split(negative, ends), strict=True
-        )
+        (_values(reader, head, part), _bits(head, part))
+        for head, part in zip(heads, parts, strict=True)
     ]
 
 
-def _read_tables(reader: Reader, last: int) -> list[list[int]]:
-    count = reader.take(1, "table count")[0]
-    if count != last + 1:
-        raise reader.error("table count", last + 1, count)
-    return [tables.frequencies(tables.decode(reader)) for _ in range(count)]
+def _bits(head: Head, tokens: Integers) -> float:
+    cells, open_bits = curve.cells(head.limit)
+    shares = np.diff(head.starts)[tokens] / rans.SCALE
+    return float(open_bits * np.count_nonzero(tokens != cells) - np.log2(shares).sum())
 
 
-def _values(
-    reader: Reader, head: Head, magnitudes: tokens.Magnitudes, negative: NDArray[np.bool_]
-) -> NDArray[Any]:
-    if magnitudes.max() > head.top:
-        raise reader.error("magnitude", f"at most {head.top}", magnitudes.max())
+def _values(reader: Reader, head: Head, tokens: Integers) -> NDArray[Any]:
+    integers = np.zeros(head.count, np.int64)
+    if head.limit:
+        integers = _integers(reader, head.limit, tokens)
     if head.kind is None:
-        return signed.decode_symbols(magnitudes, negative)
-    return signed.decode_floats(head.kind, head.top, magnitudes, negative)
+        return integers.astype(np.int32)
+    return signed.decode_floats(head.kind, head.top, integers)
+
+
+def _integers(reader: Reader, limit: int, tokens: Integers) -> Integers:
+    cells, open_bits = curve.cells(limit)
+    signs = np.sign(tokens - cells)
+    magnitudes = np.abs(tokens - cells)
+    if open_bits:
+        above = magnitudes[signs != 0] - 1
+        rest = bits.decode(reader, "open bits", np.full(len(above), open_bits, np.uint8))
+        magnitudes[signs != 0] = (above << open_bits) + rest + 1
+    if magnitudes.max() > limit:
+        raise reader.error("magnitude", f"at most {limit}", magnitudes.max())
+    return signs * magnitudes

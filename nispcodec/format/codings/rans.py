@@ -1,75 +1,125 @@
-"""A range asymmetric numeral system (rANS, Duda 2013) for tokens of a small alphabet.
+"""A range asymmetric numeral system (rANS, Duda 2013) for tokens of small alphabets.
 
 Our own rather than the `constriction` library's: its Python models take floating-point
 probabilities, whose rounding to integers a specification would have to repeat; here the tables are
-integers in the file, and the decoder is eight lines of integer arithmetic in any language.
+integers, and the decoder is eight lines of integer arithmetic in any language.
 
 The state lives in [2^16, 2^32). A decoder starts with two 16-bit words, high word first, and takes
-another word whenever the state falls below 2^16; it ends at exactly 2^16, all words read.
+another word whenever the state falls below 2^16; it ends at exactly 2^16. Long streams take turns
+between many states, so that a decoder can work on them side by side.
 """
 
 from __future__ import annotations
 
-import struct
-from collections.abc import Iterable
+from bisect import bisect_right
+from operator import length_hint
 
-from nispcodec.format.codings.reader import Reader, varint
+import numpy as np
+from numpy.typing import NDArray
 
-SCALE_BITS = 12
+from nispcodec.format.codings.reader import Reader
+
+Integers = NDArray[np.int64]
+Runs = list[tuple[int, Integers]]
+"""How many tokens, and where each token's frequency starts: (alphabet + 1,) from 0 to `SCALE`."""
+
+SCALE_BITS = 14
 SCALE = 1 << SCALE_BITS
 LOW = 1 << 16
+LONG = 1 << 14
+TURNS_BITS = 10
 
 
-def encode(runs: Iterable[tuple[bytes, list[int]]]) -> bytes:
-    """Runs of (tokens, frequencies) -> how many words, then the words, little-endian."""
-    state = LOW
+def lanes(count: int) -> int:
+    """How many states a stream of so many tokens has."""
+    return count >> TURNS_BITS if count >= LONG else 1
+
+
+def encode(starts: list[int], frequencies: list[int]) -> bytes:
+    """Start and frequency of every token -> the words, little-endian; none without tokens."""
+    if not starts:
+        return b""
+    count = lanes(len(starts))
+    states = [LOW] * count
     words: list[int] = []
-    for tokens, table in reversed(list(runs)):
-        starts = _starts(table)
-        for token in reversed(tokens):
-            frequency = table[token]
-            if state >= frequency << (32 - SCALE_BITS):
-                words.append(state & 0xFFFF)
-                state >>= 16
-            state = (state // frequency << SCALE_BITS) + state % frequency + starts[token]
-    words += [state & 0xFFFF, state >> 16]
-    words.reverse()
-    return varint(len(words)) + struct.pack(f"<{len(words)}H", *words)
+    for place in range(len(starts) - 1, -1, -1):
+        state, frequency = states[place % count], frequencies[place]
+        if state >= frequency << (32 - SCALE_BITS):
+            words.append(state & 0xFFFF)
+            state >>= 16
+        state = (state // frequency << SCALE_BITS) + state % frequency + starts[place]
+        states[place % count] = state
+    for state in reversed(states):
+        words += [state & 0xFFFF, state >> 16]
+    return np.array(words[::-1], "<u2").tobytes()
 
 
-def decode(reader: Reader, runs: list[tuple[int, list[int]]]) -> bytes:
-    """The inverse of `encode`, from runs of (count, frequencies): all tokens in one string."""
-    most = 2 + sum(count for count, _ in runs)
-    length = reader.varint("word count", most)
-    words = iter(struct.unpack(f"<{length}H", reader.take(2 * length, "words")))
+def decode(reader: Reader, runs: Runs) -> Integers:
+    """The inverse of `encode` for runs of tokens under one table: all tokens, one after another."""
+    count = sum(length for length, _ in runs)
+    if not count:
+        return np.empty(0, np.int64)
+    rest = reader.rest()
+    words = np.frombuffer(rest[: len(rest) & ~1], "<u2")
+    decoder = _one_by_one if lanes(count) == 1 else _side_by_side
     try:
-        state = next(words) << 16 | next(words)
-        tokens = bytearray()
-        for count, table in runs:
-            state = _decode_run(words, state, count, table, tokens)
-    except StopIteration:
-        raise reader.error("words", "as many as the tokens need", length) from None
-    left = len(list(words))
-    if state != LOW or left:
-        raise reader.error("final state", f"{LOW}, no words left", f"{state}, {left} words left")
-    return bytes(tokens)
+        tokens, states, used = decoder(words, runs, lanes(count))
+    except (StopIteration, IndexError):
+        raise reader.error("words", "as many as the tokens need", len(words)) from None
+    reader.take(2 * used, "words")
+    if (states != LOW).any():
+        raise reader.error("final state", LOW, int(states[states != LOW][0]))
+    return tokens
 
 
-def _decode_run(
-    words: Iterable[int], state: int, count: int, table: list[int], tokens: bytearray
-) -> int:
-    starts = _starts(table)
-    owners = b"".join(bytes([token]) * frequency for token, frequency in enumerate(table))
-    following = iter(words).__next__
-    for _ in range(count):
-        slot = state & SCALE - 1
-        token = owners[slot]
-        tokens.append(token)
-        state = table[token] * (state >> SCALE_BITS) + slot - starts[token]
-        if state < LOW:
-            state = state << 16 | following()
-    return state
+def _one_by_one(words: NDArray[np.uint16], runs: Runs, _: int) -> tuple[Integers, Integers, int]:
+    source = iter(words.tolist())
+    following = source.__next__
+    tokens: list[int] = []
+    append = tokens.append
+    state = following() << 16 | following()
+    for count, table in runs:
+        starts = table.tolist()
+        for _ in range(count):
+            slot = state & SCALE - 1
+            token = bisect_right(starts, slot) - 1
+            append(token)
+            start = starts[token]
+            state = (starts[token + 1] - start) * (state >> SCALE_BITS) + slot - start
+            if state < LOW:
+                state = state << 16 | following()
+    return np.array(tokens), np.array([state]), len(words) - length_hint(source)
 
 
-def _starts(table: list[int]) -> list[int]:
-    return [sum(table[:token]) for token in range(len(table))]
+def _side_by_side(
+    words: NDArray[np.uint16], runs: Runs, count: int
+) -> tuple[Integers, Integers, int]:
+    owners, frequencies, offsets = _by_slot([table for _, table in runs])
+    slots = np.repeat(np.arange(len(runs)) << SCALE_BITS, [length for length, _ in runs])
+    used = 2 * count
+    if used > len(words):
+        raise IndexError
+    states = words[0:used:2].astype(np.uint32) << 16 | words[1:used:2]
+    for begin in range(0, len(slots), count):
+        slot = slots[begin : begin + count]
+        state = states[: len(slot)]
+        slot += state & SCALE - 1
+        state >>= SCALE_BITS
+        state *= frequencies[slot]
+        state += offsets[slot]
+        low = np.flatnonzero(state < LOW)
+        used += len(low)
+        if used > len(words):
+            raise IndexError
+        state[low] = state[low] << 16 | words[used - len(low) : used]
+    return owners[slots].astype(np.int64), states, used
+
+
+def _by_slot(tables: list[Integers]) -> tuple[NDArray[np.uint16], ...]:
+    """(tables * SCALE,) what each slot of the state means: token, its frequency, slot - start."""
+    owners, frequencies, offsets = np.empty((3, len(tables), SCALE), np.uint16)
+    for row, starts in enumerate(tables):
+        owners[row] = np.repeat(np.arange(len(starts) - 1), np.diff(starts))
+        frequencies[row] = np.diff(starts)[owners[row]]
+        offsets[row] = np.arange(SCALE) - starts[owners[row]]
+    return owners.ravel(), frequencies.ravel(), offsets.ravel()

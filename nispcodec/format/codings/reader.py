@@ -22,6 +22,10 @@ class Reader:
         self.position += count
         return self._data[self.position - count : self.position]
 
+    def rest(self) -> memoryview:
+        """All that is left, without moving on."""
+        return self._data[self.position :]
+
     def member(self, name: str, members: tuple[str, ...], allowed: tuple[str, ...]) -> str:
         """One byte: a member of an enumeration, counted from 1, and of the `allowed` ones."""
         number = self.take(1, name)[0]

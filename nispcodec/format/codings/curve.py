@@ -1,0 +1,99 @@
+"""How often each token of a tensor occurs: a bell curve of a few parameters, in integers.
+
+Trained weights are spread about zero, somewhere between Laplace's curve and the normal one, cut
+off at the largest. Two bytes say that; a table of frequencies would take more than a tensor of a
+few hundred weights could save.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from nispcodec.format.codings.rans import SCALE, SCALE_BITS
+from nispcodec.format.codings.reader import Reader
+from nispcodec.format.constants import MAX_CELLS
+
+Integers = NDArray[np.int64]
+
+_ONE_BITS = 24
+_NARROWNESSES = np.arange(32)
+_TAILS = range(4)
+_HAS_ZEROS = 0x80
+
+
+@dataclass(frozen=True)
+class Curve:
+    """Student's curve of 2^(tail + 1) - 1 degrees of freedom, in half-octave steps of width.
+
+    narrowness  0 to 31
+    tail        0 to 3: from heavy to nearly normal
+    zeros       0, or the share of zeros in 256ths where the curve does not tell it
+    """
+
+    narrowness: int
+    tail: int
+    zeros: int
+
+    def encode(self) -> bytes:
+        """One byte; two when there is a share of zeros."""
+        byte = self.narrowness | self.tail << 5
+        return bytes([byte | _HAS_ZEROS, self.zeros]) if self.zeros else bytes([byte])
+
+    def starts(self, cells: int) -> Integers:
+        """(2 cells + 2,): where the frequency of each token, from -cells up, begins; the end."""
+        half = frequencies(cells, np.array([self.narrowness]), self.tail, self.zeros)[0]
+        both = np.concatenate([half[:0:-1], half])
+        return np.concatenate([[0], np.cumsum(both)])
+
+
+def decode(reader: Reader) -> Curve:
+    """The inverse of `Curve.encode`."""
+    byte = reader.take(1, "curve")[0]
+    zeros = reader.take(1, "zeros")[0] if byte & _HAS_ZEROS else 0
+    if byte & _HAS_ZEROS and not zeros:
+        raise reader.error("zeros", "1 to 255", 0)
+    return Curve(byte & 31, byte >> 5 & 3, zeros)
+
+
+def cells(limit: int) -> tuple[int, int]:
+    """Of magnitudes up to `limit`: on how many cells above zero, how many bits each leaves open."""
+    open_bits = (max(limit - 1, 0) // MAX_CELLS).bit_length()
+    return (limit + (1 << open_bits) - 1) >> open_bits, open_bits
+
+
+def fit(counts: Integers) -> tuple[Curve, float]:
+    """(cells + 1,) how often 0 and each magnitude, of either sign -> the best curve, its bits."""
+    total = int(counts.sum())
+    share = min(max(round(256 * int(counts[0]) / total), 1), 255)
+    used = np.flatnonzero(counts)
+    best: tuple[float, Curve] | None = None
+    for zeros in (0, share):
+        for tail in _TAILS:
+            tables = frequencies(len(counts) - 1, _NARROWNESSES, tail, zeros)[:, used]
+            bits = SCALE_BITS * total - np.log2(tables) @ counts[used]
+            narrowness = int(bits.argmin())
+            cost = float(bits[narrowness]) + (8 if zeros else 0)
+            if best is None or cost < best[0]:
+                best = cost, Curve(narrowness, tail, zeros)
+    assert best is not None
+    return best[1], best[0]
+
+
+def frequencies(cells: int, narrowness: Integers, tail: int, zeros: int) -> Integers:
+    """(n,) -> (n, cells + 1) frequencies of 0 and of each cell, either sign; with both, `SCALE`."""
+    ratio = ((2 + narrowness % 2) << narrowness // 2)[:, None]
+    wide = 4 * cells * cells << tail
+    height = (wide << _ONE_BITS) // (wide + ratio * np.arange(cells + 1) ** 2)
+    for _ in range(tail):
+        height = height * height >> _ONE_BITS
+    height += 1
+    if zeros:
+        height[:, 0] = 0
+    free = SCALE - 2 * cells - 1
+    sum_of_both = 2 * height.sum(axis=1, keepdims=True) - height[:, :1]
+    table = 1 + height * (free - (free * zeros >> 8)) // sum_of_both
+    table[:, 0] = SCALE - 2 * table[:, 1:].sum(axis=1)
+    return table

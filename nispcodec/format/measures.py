@@ -1,0 +1,65 @@
+"""The `info` field of META: how a file was made and what was measured.
+
+Keys that the format knows are numbers on disk; other keys are text. Floats are float32 there: three
+digits are all that a measurement is good for.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from nispcodec.errors import FormatError
+from nispcodec.format.constants import MEASURES, META
+
+Scalar = str | int | float | bool
+_PLAIN = "text, a number or a bool"
+
+
+def encode(info: Mapping[str, Scalar]) -> dict[int | str, Scalar]:
+    """The map on disk."""
+    for key, value in info.items():
+        if not isinstance(key, str) or not isinstance(value, (str, int, float, bool)):
+            raise _error(key, _PLAIN, type(value).__name__)
+    return {
+        1 + MEASURES.index(key) if key in MEASURES else key: _single(value)
+        for key, value in info.items()
+    }
+
+
+def decode(stored: dict[Any, Any]) -> dict[str, Scalar]:
+    """The inverse of `encode`; a float comes back as the shortest decimal that means it."""
+    info: dict[str, Scalar] = {}
+    for key, value in stored.items():
+        if type(value) not in (str, int, float, bool):
+            raise _error(key, _PLAIN, type(value).__name__)
+        info[_name(key)] = _shortest(value)
+    return info
+
+
+def _name(key: object) -> str:
+    if type(key) is int and 1 <= key <= len(MEASURES):
+        return MEASURES[key - 1]
+    if type(key) is not str or key in MEASURES:
+        raise _error(key, f"1 to {len(MEASURES)}, or another name", repr(key))
+    return key
+
+
+def _single(value: Scalar) -> Scalar:
+    if not isinstance(value, float):
+        return value
+    with np.errstate(over="ignore"):
+        single = float(np.float32(value))
+    return single if np.isfinite(single) else value
+
+
+def _shortest(value: Scalar) -> Scalar:
+    if not isinstance(value, float) or _single(value) != value:
+        return value
+    return float(str(np.float32(value)))
+
+
+def _error(key: object, expected: str, found: str) -> FormatError:
+    return FormatError(META, f"document.info.{key}", expected, found)
