@@ -22,6 +22,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from benchmarks.machine import commit, machine, versions
+from benchmarks.soundness import soundness, two_chart_triangles
 from nispcodec.asset import TexturedMesh
 from nispcodec.decode.atlas import asset_uv
 from nispcodec.decode.components import without_noise
@@ -133,20 +134,6 @@ def start_seconds(model: Path) -> float:
     return round(best_seconds(lambda: subprocess.run(command, check=True)), 3)
 
 
-def soundness(mesh: TexturedMesh, dropped: int) -> Record:
-    """Cracks and doubled vertices, which must be 0; components that were dropped as noise."""
-    faces = mesh.faces.astype(np.int64)
-    edges = np.stack([faces, np.roll(faces, -1, axis=1)], axis=2).reshape(-1, 2)
-    forth, back = (np.unique(edges @ weights) for weights in ([1 << 32, 1], [1, 1 << 32]))
-    return {
-        "faces": len(faces),
-        "open_edges": len(np.setdiff1d(forth, back)),
-        "edges_used_twice": len(edges) - len(forth),
-        "duplicate_vertices": len(mesh.positions) - len(np.unique(mesh.positions, axis=0)),
-        "dropped_components": dropped,
-    }
-
-
 def naive(document: Document, resolution: int) -> TexturedMesh:
     """One UV a vertex, as marching cubes alone gives it: smeared across every seam."""
     mesh, _ = textured_mesh(document, resolution)
@@ -170,16 +157,19 @@ def fidelity(document: Document, original: TexturedMesh) -> Record:
     measured = compare(original, mesh)
     record = {
         "resolution": report.resolution,
-        "soundness": soundness(mesh, report.dropped),
+        "soundness": soundness(document, mesh),
+        "dropped_components": report.dropped,
         "geometry": measured["geometry"],
     }
     if document.uv is None:
         return record
-    smeared = compare(original, naive(document, report.resolution))
+    smeared = naive(document, report.resolution)
+    color, plain = measured["color"], compare(original, smeared)["color"]
     return record | {
         "uv": measured["uv"],
-        "color_psnr": measured["color"]["psnr"],
-        "color_psnr_naive": smeared["color"]["psnr"],
+        "color": color,
+        "color_naive": plain,
+        "two_chart_triangles_naive": two_chart_triangles(document, smeared),
     }
 
 
