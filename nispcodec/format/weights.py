@@ -74,9 +74,9 @@ def _check_count(specs: list[NetworkSpec]) -> None:
 def _network(
     reader: Reader, name: str, spec: NetworkSpec, parts: list[Part], values: list[NDArray[Any]]
 ) -> Network:
-    tensors, steps = {}, {}
+    tensors, steps, every = {}, {}, spec.shapes
     for part, flat in zip(parts, values, strict=True):
-        shapes = [spec.shapes[key] for key in part.names]
+        shapes = [every[key] for key in part.names]
         ends = np.cumsum([int(np.prod(shape)) for shape in shapes])[:-1]
         for key, shape, each in zip(part.names, shapes, np.split(flat, ends), strict=True):
             tensors[key] = _scale(reader, f"{name}.{key}", each, part.step).reshape(shape)

@@ -123,6 +123,8 @@ def _codings() -> Iterator[tuple[str, bytes]]:
         ):
             document = dataclasses.replace(plain(), sdf=sdf)
             yield f"coding-{coding}-{kind}", pack(document, coding)
+    long = quantised(pruned(network((182, 182), 1, 12)), 0.0078125)
+    yield "coding-entropy-long", pack(dataclasses.replace(plain(), sdf=long), "entropy")
     empty = Network(plain().sdf.spec, {k: v * 0 for k, v in plain().sdf.tensors.items()})
     for coding in ("coo", "csr", "dia", "entropy"):
         yield f"coding-{coding}-empty", pack(dataclasses.replace(plain(), sdf=empty), coding)

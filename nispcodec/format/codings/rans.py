@@ -22,11 +22,13 @@ from nispcodec.format.codings.reader import Reader
 Integers = NDArray[np.int64]
 Runs = list[tuple[int, Integers]]
 """How many tokens, and where each token's frequency starts: (alphabet + 1,) from 0 to `SCALE`."""
+Decoded = tuple[Integers, NDArray[np.integer], int]
+"""Tokens, the last states, how many words it took."""
 
 SCALE_BITS = 14
 SCALE = 1 << SCALE_BITS
 LOW = 1 << 16
-LONG = 1 << 14
+LONG = 1 << 15
 TURNS_BITS = 10
 
 
@@ -72,54 +74,49 @@ def decode(reader: Reader, runs: Runs) -> Integers:
     return tokens
 
 
-def _one_by_one(words: NDArray[np.uint16], runs: Runs, _: int) -> tuple[Integers, Integers, int]:
+def _one_by_one(words: NDArray[np.uint16], runs: Runs, _: int) -> Decoded:
     source = iter(words.tolist())
-    following = source.__next__
+    following, mask, low = source.__next__, SCALE - 1, LOW
     tokens: list[int] = []
     append = tokens.append
     state = following() << 16 | following()
     for count, table in runs:
-        starts = table.tolist()
+        starts, frequencies = table[:-1].tolist(), np.diff(table).tolist()
         for _ in range(count):
-            slot = state & SCALE - 1
+            slot = state & mask
             token = bisect_right(starts, slot) - 1
             append(token)
-            start = starts[token]
-            state = (starts[token + 1] - start) * (state >> SCALE_BITS) + slot - start
-            if state < LOW:
+            state = frequencies[token] * (state >> SCALE_BITS) + slot - starts[token]
+            if state < low:
                 state = state << 16 | following()
     return np.array(tokens), np.array([state]), len(words) - length_hint(source)
 
 
-def _side_by_side(
-    words: NDArray[np.uint16], runs: Runs, count: int
-) -> tuple[Integers, Integers, int]:
-    owners, frequencies, offsets = _by_slot([table for _, table in runs])
-    slots = np.repeat(np.arange(len(runs)) << SCALE_BITS, [length for length, _ in runs])
+def _side_by_side(words: NDArray[np.uint16], runs: Runs, count: int) -> Decoded:
+    """Here the tokens of all runs are numbered through, and so are their slots."""
+    lengths = [length for length, _ in runs]
+    firsts = np.cumsum([0] + [len(table) - 1 for _, table in runs])[:-1]
+    starts = np.concatenate([table[:-1] for _, table in runs]).astype(np.uint32)
+    frequencies = np.concatenate([np.diff(table) for _, table in runs]).astype(np.uint32)
+    owners = np.repeat(np.arange(len(starts), dtype=np.uint32), frequencies)
+    bases = np.repeat(np.arange(len(runs)) << SCALE_BITS, lengths)
+    tokens = np.empty(len(bases), np.int64)
     used = 2 * count
     if used > len(words):
         raise IndexError
     states = words[0:used:2].astype(np.uint32) << 16 | words[1:used:2]
-    for begin in range(0, len(slots), count):
-        slot = slots[begin : begin + count]
-        state = states[: len(slot)]
-        slot += state & SCALE - 1
+    for begin in range(0, len(bases), count):
+        base = bases[begin : begin + count]
+        state = states[: len(base)]
+        slot = state & SCALE - 1
+        token = owners.take(base + slot)
+        tokens[begin : begin + count] = token
         state >>= SCALE_BITS
-        state *= frequencies[slot]
-        state += offsets[slot]
-        low = np.flatnonzero(state < LOW)
+        state *= frequencies.take(token)
+        state += slot - starts.take(token)
+        low = (state < LOW).nonzero()[0]
         used += len(low)
         if used > len(words):
             raise IndexError
-        state[low] = state[low] << 16 | words[used - len(low) : used]
-    return owners[slots].astype(np.int64), states, used
-
-
-def _by_slot(tables: list[Integers]) -> tuple[NDArray[np.uint16], ...]:
-    """(tables * SCALE,) what each slot of the state means: token, its frequency, slot - start."""
-    owners, frequencies, offsets = np.empty((3, len(tables), SCALE), np.uint16)
-    for row, starts in enumerate(tables):
-        owners[row] = np.repeat(np.arange(len(starts) - 1), np.diff(starts))
-        frequencies[row] = np.diff(starts)[owners[row]]
-        offsets[row] = np.arange(SCALE) - starts[owners[row]]
-    return owners.ravel(), frequencies.ravel(), offsets.ravel()
+        state[low] = state.take(low) << 16 | words[used - len(low) : used]
+    return tokens - np.repeat(firsts, lengths), states, used
