@@ -2,26 +2,43 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 
 import click
 
 from benchmarks.codecs import CODECS
-from benchmarks.runner import Finished, Job, plan, run
-from benchmarks.source import sources
+from benchmarks.results import write_results
+from benchmarks.runner import Finished, Job, drawings, plan, run
+from benchmarks.source import Source, sources
 from benchmarks.store import Record, Store
+from benchmarks.textures import TEXTURES
 
 QUICK_ASSETS = 2
+NAMES = (*CODECS, TEXTURES)
 
 
 @click.command()
-@click.option("--assets", type=click.Path(path_type=Path, exists=True), default="../shared/assets")
+@click.option(
+    "--assets",
+    type=click.Path(path_type=Path, exists=True),
+    default="../shared/assets",
+    show_default=True,
+    help="A folder of NAME.obj or NAME/NAME.obj.",
+)
 @click.option("--only", multiple=True, help="An asset by name; may be repeated.")
-@click.option("--codec", "codecs", multiple=True, type=click.Choice(list(CODECS)))
+@click.option("--codec", "codecs", multiple=True, type=click.Choice(NAMES), help="Likewise.")
 @click.option("--quick", is_flag=True, help="Two assets, few settings.")
 @click.option("--jobs", type=click.IntRange(1), default=1, show_default=True)
 @click.option("--again", is_flag=True, help="Measure finished points again.")
-@click.option("-o", "--output", type=click.Path(path_type=Path), default="build/bench")
+@click.option(
+    "-o",
+    "--output",
+    type=click.Path(path_type=Path),
+    default="build/bench",
+    show_default=True,
+    help="Folder for the report, and for the points: an interrupted run goes on.",
+)
 def main(
     assets: Path,
     only: tuple[str, ...],
@@ -31,21 +48,40 @@ def main(
     again: bool,
     output: Path,
 ) -> None:
-    """Measure every codec on every asset.
+    """Measure every codec on every asset, then write report.html, results.json and results.csv.
+
+    Times are true only when the machine has nothing else to do, and --jobs is 1.
 
     \b
     Example: python -m benchmarks --assets ../shared/assets --quick
     """
-    chosen = [source for source in sources(assets) if not only or source.name in only]
-    chosen = chosen[:QUICK_ASSETS] if quick and not only else chosen
     store = Store(output / "points")
-    planned = list(plan(chosen, codecs or CODECS, quick))
+    planned = list(plan(chosen(assets, only, quick), codecs or NAMES, quick))
     for each in planned:
         if not isinstance(each, Job):
-            store.put(each, b"")
-    todo = [each for each in planned if isinstance(each, Job)]
-    todo = [j for j in todo if again or not store.holds(j.path.stem, j.codec, j.setting)]
-    for finished in run(todo, store, jobs):
+            store.put(each)
+            click.echo(f"{each['asset']} {each['codec']}: {outcome(each)}", err=True)
+    points = [each for each in planned if isinstance(each, Job)]
+    work(points, store, jobs, again)
+    work(list(drawings(points, store)), store, jobs, again)
+    click.echo(write_results(store, output))
+
+
+def chosen(assets: Path, only: Sequence[str], quick: bool) -> list[Source]:
+    """The assets of a run."""
+    found = sources(assets)
+    unknown = set(only) - {source.name for source in found}
+    if unknown or not found:
+        wanted = ", ".join(sorted(unknown)) or "NAME.obj or NAME/NAME.obj"
+        raise click.BadParameter(f"{assets}: expected {wanted}, found {len(found)} other assets")
+    if only:
+        return [source for source in found if source.name in only]
+    return found[:QUICK_ASSETS] if quick else found
+
+
+def work(jobs: Sequence[Job], store: Store, workers: int, again: bool) -> None:
+    """Do what is not done yet, telling of each."""
+    for finished in run([j for j in jobs if again or not j.done(store)], store, workers):
         click.echo(told(finished), err=True)
 
 
@@ -61,7 +97,13 @@ def told(finished: Finished) -> str:
 
 def outcome(record: Record) -> str:
     """What came of a point, in a few words."""
+    if "skipped" in record:
+        return f"skipped: {record['skipped']}"
     if "failure" in record:
         return f"FAILED: {record['failure']}"
+    if "pictures" in record:
+        return f"pictures {record['pictures'].get('psnr', float('nan')):.1f} dB"
+    if "metrics" not in record:
+        return f"{record['bytes']:,} B, {record['psnr']:.1f} dB"
     error = record["metrics"]["geometry"]["larger"]["mean"]
     return f"{record['bytes']:,} B, distance {error:.1e}"

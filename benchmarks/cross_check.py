@@ -55,7 +55,7 @@ def closest(points: Array, triangles: Array) -> Array:
 
 
 def offsets(points: Array, triangles: Array) -> tuple[Array, NDArray[np.intp], Array]:
-    """From points (n, 3) to the closest of the surface, on which triangle; to the nearest sample."""
+    """From points (n, 3) to the closest of the surface, its triangle; to the nearest sample."""
     from scipy.spatial import cKDTree
 
     cloud, owners = sampled(triangles, CLOUD, seed=77)

@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import asdict
-from typing import Any
 
 from benchmarks.codecs import Setting, codec
 from benchmarks.isolated import WorkFailed, isolated
 from benchmarks.machine import commit
 from benchmarks.source import Source
-
-Record = dict[str, Any]
+from benchmarks.store import Record
 
 
 def measured(source: Source, name: str, setting: Setting) -> tuple[Record, bytes]:

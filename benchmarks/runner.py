@@ -2,27 +2,41 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from multiprocessing import get_context
 from pathlib import Path
 from time import monotonic
 
+from benchmarks import drawing, point, textures
 from benchmarks.codecs import Setting, Unavailable, codec
-from benchmarks.point import Record, measured
+from benchmarks.hull import lower_hull
+from benchmarks.rows import pairs, row
 from benchmarks.source import Source
-from benchmarks.store import Store
+from benchmarks.store import Record, Store
+from benchmarks.textures import TEXTURES
+
+# Codecs whose decodes are worth looking at; text and floats look like the original.
+DRAWN = ("nisp", "simplified_draco", "draco", "gltfpack")
 
 
 @dataclass(frozen=True)
 class Job:
-    """One point to be measured."""
+    """One point to be measured, or, when it is, to be drawn."""
 
     path: Path
     codec: str
     setting: Setting
+    draw: bool = False
+
+    def done(self, store: Store) -> bool:
+        """Whether the store has the result already; a failure is none."""
+        record = store.find(self.path.stem, self.codec, self.setting)
+        if record is None or "failure" in record:
+            return False
+        return not self.draw or "psnr" in record.get("pictures", {})
 
 
 @dataclass(frozen=True)
@@ -35,13 +49,12 @@ class Finished:
     seconds_left: float
 
 
-def plan(sources: Iterable[Source], codecs: Iterable[str], quick: bool) -> Iterator[Job | Record]:
-    """The jobs of a run, and a record for each codec that cannot run and each bad asset."""
-    codecs = list(codecs)
+def plan(sources: Iterable[Source], codecs: Sequence[str], quick: bool) -> Iterator[Job | Record]:
+    """The points of a run, and a record for each codec that cannot run and each bad asset."""
     for source in sources:
         for name in codecs:
             try:
-                settings = codec(name).settings(source, quick)
+                settings = _settings(source, name, quick)
             except (Unavailable, ImportError) as why:
                 yield _without(source, name, {"skipped": str(why)})
             except Exception as why:
@@ -50,14 +63,26 @@ def plan(sources: Iterable[Source], codecs: Iterable[str], quick: bool) -> Itera
                 yield from (Job(source.path, name, setting) for setting in settings)
 
 
-def run(jobs: list[Job], store: Store, workers: int) -> Iterator[Finished]:
-    """Measure every job, keep its record in the store, and tell of it as it ends."""
+def drawings(measured: Sequence[Job], store: Store) -> Iterator[Job]:
+    """Of finished points those to be drawn: ours, and the lower hull of each peer."""
+    curves: dict[tuple[Path, str], list[tuple[Job, Record]]] = {}
+    for job in measured:
+        record = store.find(job.path.stem, job.codec, job.setting)
+        if job.codec in DRAWN and record is not None and "metrics" in record:
+            curves.setdefault((job.path, job.codec), []).append((job, record))
+    for (_, name), points in curves.items():
+        sizes = pairs([row(record) for _, record in points], "distance")
+        chosen = range(len(points)) if name == "nisp" else lower_hull(sizes)
+        yield from (replace(points[index][0], draw=True) for index in chosen)
+
+
+def run(jobs: Sequence[Job], store: Store, workers: int) -> Iterator[Finished]:
+    """Do every job; its record is in the store when it is told of."""
     clock = Clock(jobs, workers)
     with ProcessPoolExecutor(workers, mp_context=get_context("spawn")) as pool:
-        started = {pool.submit(_measure, job): job for job in jobs}
+        started = {pool.submit(_work, job, store): job for job in jobs}
         for done, future in enumerate(as_completed(started), start=1):
-            record, data, seconds = future.result()
-            store.put(record, data)
+            record, seconds = future.result()
             left = clock.left(started[future].codec, seconds)
             yield Finished(record, done, len(jobs), left)
 
@@ -65,7 +90,7 @@ def run(jobs: list[Job], store: Store, workers: int) -> Iterator[Finished]:
 class Clock:
     """How long the rest takes, from how long the finished points of each codec took."""
 
-    def __init__(self, jobs: list[Job], workers: int) -> None:
+    def __init__(self, jobs: Sequence[Job], workers: int) -> None:
         self.workers = workers
         self.waiting = [job.codec for job in jobs]
         self.took: dict[str, list[float]] = {}
@@ -79,6 +104,12 @@ class Clock:
         return rest / self.workers
 
 
+def _settings(source: Source, name: str, quick: bool) -> Sequence[Setting]:
+    if name == TEXTURES:
+        return textures.SETTINGS
+    return codec(name).settings(source, quick)
+
+
 def _mean(values: list[float]) -> float:
     return sum(values) / len(values)
 
@@ -87,22 +118,38 @@ def _without(source: Source, name: str, why: dict[str, str]) -> Record:
     return {"asset": source.name, "codec": name, "setting": {}, **why}
 
 
-def _measure(job: Job) -> tuple[Record, bytes, float]:
+def _work(job: Job, store: Store) -> tuple[Record, float]:
     started = monotonic()
-    record, data = _caught(lambda: measured(_source(job.path), job.codec, job.setting), job)
-    return record, data, monotonic() - started
-
-
-def _caught(work: Callable[[], tuple[Record, bytes]], job: Job) -> tuple[Record, bytes]:
     try:
-        return work()
+        record = _drawn(job, store) if job.draw else _measured(job, store)
     except Exception as why:
-        failure = f"{type(why).__name__}: {why}"
         record = {"asset": job.path.stem, "codec": job.codec, "setting": job.setting}
-        return record | {"failure": failure}, b""
+        record |= {"failure": f"{type(why).__name__}: {why}"}
+        store.put(record)
+    return record, monotonic() - started
+
+
+def _measured(job: Job, store: Store) -> Record:
+    source = _gallery(job.path).source
+    if job.codec == TEXTURES:
+        record, data = textures.measured(source, job.setting)
+    else:
+        record, data = point.measured(source, job.codec, job.setting)
+    store.put(record, data)
+    return record
+
+
+def _drawn(job: Job, store: Store) -> Record:
+    record = store.find(job.path.stem, job.codec, job.setting)
+    assert record is not None
+    gallery = _gallery(job.path)
+    record, picture = gallery.drawn(record, store.file(record))
+    store.put(record, picture=picture)
+    store.put_original(job.path.stem, drawing.as_webp(gallery.original[0]))
+    return record
 
 
 @lru_cache(maxsize=1)
-def _source(path: Path) -> Source:
+def _gallery(path: Path) -> drawing.Gallery:
     """Jobs come asset by asset, so one asset at a time is enough."""
-    return Source(path)
+    return drawing.Gallery(Source(path))

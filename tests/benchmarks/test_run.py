@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import os
 import time
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -10,7 +11,7 @@ from benchmarks import runner
 from benchmarks.codecs import Unavailable
 from benchmarks.hull import lower_hull
 from benchmarks.isolated import WorkFailed, isolated
-from benchmarks.runner import Clock, Job, plan
+from benchmarks.runner import Clock, Job, plan, run
 from benchmarks.source import Source
 from benchmarks.store import Store
 
@@ -41,16 +42,31 @@ def test_hull_keeps_what_no_mix_of_others_beats() -> None:
     assert lower_hull(pairs) == [5, 0, 3, 1]
 
 
-def test_store_forgets_failures_only(tmp_path: Path) -> None:
-    store = Store(tmp_path)
+def test_finished_points_are_not_run_again_and_failures_are(tmp_path: Path) -> None:
+    store, job = Store(tmp_path), Job(Path("a.obj"), "c", {"q": 1})
     record = {"asset": "a", "codec": "c", "setting": {"q": 1}}
-    assert not store.holds("a", "c", {"q": 1})
+    assert not job.done(store)
     store.put(record | {"failure": "bad luck"}, b"")
-    assert not store.holds("a", "c", {"q": 1})
+    assert not job.done(store)
     store.put(record | {"bytes": 3}, b"abc")
-    assert store.holds("a", "c", {"q": 1})
-    assert store.file(record).read_bytes() == b"abc"
+    assert job.done(store)
+    assert store.file(record) == b"abc"
     assert store.records() == [record | {"bytes": 3}]
+    drawing = replace(job, draw=True)
+    assert not drawing.done(store)
+    store.put(record | {"bytes": 3, "pictures": {"psnr": 30.0}}, picture=b"webp")
+    assert drawing.done(store)
+    assert (store.file(record), store.picture(record)) == (b"abc", b"webp")
+
+
+def test_a_failed_point_is_a_record_and_leaves_the_next_alone(tmp_path: Path) -> None:
+    store, path = Store(tmp_path / "points"), tmp_path / "cloud.obj"
+    path.write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nf 1/1 2/2 3/3\n")
+    jobs = [Job(path, "glb", {}), Job(tmp_path / "absent.obj", "glb", {})]
+    found = {each.record["asset"]: each.record for each in run(jobs, store, workers=1)}
+    assert found["cloud"]["metrics"]["geometry"]["larger"]["max"] < 1e-6
+    assert "absent.obj" in found["absent"]["failure"]
+    assert store.find("absent", "glb", {}) == found["absent"]
 
 
 class Stub:

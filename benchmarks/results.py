@@ -1,0 +1,47 @@
+"""What a run leaves: results.json, results.csv, plots and one report to open in a browser."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+from benchmarks.machine import commit, machine, versions
+from benchmarks.plots import draw
+from benchmarks.report.page import page
+from benchmarks.rows import ERRORS, as_csv, row
+from benchmarks.source import SAMPLES, SEED
+from benchmarks.store import Record, Store
+from benchmarks.summary import summarised
+from benchmarks.textures import TEXTURES
+from nispcodec.output import write_atomic
+
+SCHEMA = 1
+
+
+def write_results(store: Store, folder: Path) -> Path:
+    """Write everything into a folder -> the path of the report."""
+    results = gathered(store)
+    write_atomic(folder / "results.json", json.dumps(results, indent=1).encode() + b"\n")
+    rows = [row(record) for record in results["points"]]
+    write_atomic(folder / "results.csv", as_csv(rows).encode())
+    for error in ERRORS:
+        draw(rows, folder / f"{error}.png", error)
+    write_atomic(folder / "report.html", page(results, store).encode())
+    return folder / "report.html"
+
+
+def gathered(store: Store) -> Record:
+    """All points with where, when and with what they were measured, and the summary."""
+    records = store.records()
+    points = [record for record in records if record["codec"] != TEXTURES]
+    return {
+        "schema": SCHEMA,
+        "commit": commit(),
+        "machine": machine(),
+        "versions": versions(),
+        "seeds": {"samples": SEED, "encoder": SEED},
+        "samples": SAMPLES,
+        "points": points,
+        "textures": [record for record in records if record["codec"] == TEXTURES],
+        "summary": summarised([row(record) for record in points]),
+    }
