@@ -19,6 +19,8 @@ from nispcodec.render.tangents import tangent_axes
 OFFSET = np.float32(1e-3)
 # A hit is moved along its ray by no more than this.
 CORRECTION = 5e-4
+# Where the field closes an opening of the asset there is nothing to see.
+OPENING = Material("opening", base_color=(0.0, 0.0, 0.0, 0.0), alpha_mode="mask")
 
 
 class FieldScene:
@@ -34,8 +36,8 @@ class FieldScene:
 
     @property
     def materials(self) -> tuple[Material, ...]:
-        """The document's."""
-        return self.model.document.materials
+        """The document's, and one more for its openings."""
+        return (*self.model.document.materials, OPENING)
 
     @property
     def textures(self) -> tuple[Texture, ...]:
@@ -46,6 +48,15 @@ class FieldScene:
     def space(self) -> Space:
         """Where the surface may be; found once."""
         return bounding_space(self.model.document.sdf)
+
+    @cached_property
+    def _chart_materials(self) -> Integers:
+        """(k,) int32: the material of each chart."""
+        table = self.model.document.charts
+        materials = table.materials.copy()
+        if table.openings:
+            materials[-1] = len(self.materials) - 1
+        return materials
 
     def cast(self, origins: Floats, directions: Floats, layer: int = 0) -> Cast:
         """See `Scene.cast`."""
@@ -76,7 +87,7 @@ class FieldScene:
             facing=(normals * towards).sum(axis=1) < 0,
             uvs=uvs,
             jacobians=self._jacobians(points, normals, charts, uvs),
-            materials=table.materials[charts],
+            materials=self._chart_materials[charts],
             textured=table.has_uv[charts],
             charts=charts,
         )

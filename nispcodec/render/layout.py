@@ -2,56 +2,76 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
-from numpy.typing import NDArray
 
 from nispcodec.asset import TexturedMesh
 from nispcodec.decode.model import NispModel
 from nispcodec.document import Frame
-from nispcodec.metrics.surface import Surface, SurfacePoints
+from nispcodec.metrics.sides import sides_of
+from nispcodec.metrics.surface import Array, Surface, SurfacePoints
 from nispcodec.metrics.uv import uv_at
 from nispcodec.render.fragments import Floats
 
-POINTS = 200_000
+POINTS = 150_000
 
 
 def layouts(
     original: TexturedMesh, decoded: NispModel | TexturedMesh, frame: Frame, size: int
-) -> tuple[Floats, Floats]:
-    """The UV layouts of both (size, size, 3), of the same points of the original surface.
+) -> tuple[Floats, Floats, Floats]:
+    """The UV layouts of both (size, size, 3), and the distance between them (size, size).
 
-    A point is drawn in both in the colour of its original UV: what is misplaced stands out.
+    Of points of the original that are not hidden inside of it. A point has the colour of its
+    original UV in both: what is misplaced stands out. The distance is shown at the original UV.
     """
     surface = Surface.of(original, frame)
-    points = surface.sample(POINTS, np.random.default_rng(0))
-    points = points[original.has_uv[points.faces]]
-    theirs = uv_at(surface, points)
-    ours = _decoded_uvs(decoded, frame, points)
-    colors = np.column_stack([theirs % 1, np.full(len(theirs), 0.5)]).astype(np.float32)
-    low, span = _window(theirs)
-    first, second = (_plot((uvs - low) / span, colors, size) for uvs in (theirs, ours))
-    return first, second
+    points = _spread_over_uv(surface)
+    points = points[~sides_of(surface, points).hidden]
+    theirs, ours = uv_at(surface, points), _decoded_uvs(decoded, frame, points)
+    low = np.minimum(theirs.min(axis=0, initial=0), 0)
+    span = max(1.0, float((theirs - low).max(initial=1)))
+    colors = np.column_stack([theirs % 1, np.full(len(theirs), 0.5)])
+    off = np.linalg.norm(ours - theirs, axis=1, keepdims=True)
+    return (
+        _plot((theirs - low) / span, colors, np.ones((size, size, 3))),
+        _plot((ours - low) / span, colors, np.ones((size, size, 3))),
+        _plot((theirs - low) / span, off, np.zeros((size, size, 1)))[..., 0],
+    )
 
 
-def _decoded_uvs(
-    decoded: NispModel | TexturedMesh, frame: Frame, points: SurfacePoints
-) -> NDArray[np.floating]:
+def _spread_over_uv(surface: Surface) -> SurfacePoints:
+    """Points of the surface, even in the UV layout."""
+    mesh = surface.mesh
+    chosen = np.flatnonzero(mesh.has_uv)
+    flat = np.column_stack([mesh.uvs, np.zeros(len(mesh.uvs))])
+    laid_out = replace(
+        mesh,
+        positions=flat,
+        faces=mesh.uv_faces[chosen],
+        uv_faces=mesh.uv_faces[chosen],
+        face_materials=mesh.face_materials[chosen],
+    )
+    layout = Surface(laid_out, flat)
+    if not layout.areas.any():  # a palette: every chart is a point
+        return surface.sample(POINTS, np.random.default_rng(0))
+    points = layout.sample(POINTS, np.random.default_rng(0))
+    faces = chosen[points.faces]
+    return SurfacePoints(faces, points.weights, surface.interpolate(faces, points.weights))
+
+
+def _decoded_uvs(decoded: NispModel | TexturedMesh, frame: Frame, points: SurfacePoints) -> Array:
     if isinstance(decoded, NispModel):
-        return decoded.uv(frame.to_world(points.positions))
+        return decoded.uv(frame.to_world(points.positions)).astype(np.float64)
     surface = Surface.of(decoded, frame)
     return uv_at(surface, surface.closest(points.positions))
 
 
-def _window(uvs: NDArray[np.floating]) -> tuple[NDArray[np.floating], float]:
-    """Lower left corner (2,) and width of the square that is shown: [0, 1]^2, or all there is."""
-    low = np.minimum(uvs.min(axis=0, initial=0), 0)
-    return low, float(max(1.0, (uvs - low).max(initial=1)))
-
-
-def _plot(places: NDArray[np.floating], colors: Floats, size: int) -> Floats:
-    picture = np.ones((size, size, 3), np.float32)
+def _plot(places: Array, values: Array, ground: Array) -> Floats:
+    """The ground (size, size, k) with values (n, k) at places (n, 2) of the unit square."""
+    size = len(ground)
     cells = np.floor(places * size).astype(np.int64)
     inside = ((cells >= 0) & (cells < size)).all(axis=1)
     columns, rows = cells[inside].T
-    picture[size - 1 - rows, columns] = colors[inside]
-    return picture
+    ground[size - 1 - rows, columns] = values[inside]
+    return ground.astype(np.float32)

@@ -85,7 +85,7 @@ class March:
         front, leave = self._into_ball()
         for _ in range(MAX_STEPS):
             radius = self._sphere(front.number, front.at)
-            hit = radius < EPSILON
+            hit = (radius < 0) | ((radius < EPSILON) & ~_torn(front, radius))
             distances[front.number[hit]] = self._crossing(front[hit], radius[hit])
             front = _stepped(front[~hit], radius[~hit])
             front = front[front.at < leave[front.number]]
@@ -121,7 +121,9 @@ class March:
 
     def _crossing(self, front: _Front, radius: Floats) -> Floats:
         """Where the rays meet the surface: here, or within the step that went through it."""
-        through = (radius < -EPSILON) & (front.step > 0)
+        # What is near the surface behind a torn step may be the far side of something thin.
+        deep = (radius < -EPSILON) | _torn(front, radius)
+        through = (radius < 0) & deep & (front.step > 0)
         number, high, beyond = front.number[through], front.at[through], radius[through]
         low, before = high - front.step[through], front.radius[through]
         for _ in range(REFINEMENTS):
@@ -136,10 +138,18 @@ class March:
         return distances
 
 
+def _torn(front: _Front, radius: Floats) -> NDArray[np.bool_]:
+    """Whether the spheres at both ends of the last step leave a gap between them."""
+    torn: NDArray[np.bool_] = front.step > (
+        np.maximum(front.radius, LEAST_STEP) + np.maximum(radius, LEAST_STEP)
+    )
+    return torn
+
+
 def _stepped(front: _Front, radius: Floats) -> _Front:
     """One step on; back to the edge of the sphere before where the last step tore."""
     before, here = np.maximum(front.radius, LEAST_STEP), np.maximum(radius, LEAST_STEP)
-    torn = front.step > before + here
+    torn = _torn(front, radius)
     change = (radius - front.radius) / np.maximum(front.step, LEAST_STEP)
     trend = np.where(front.step > 0, front.trend + NEWEST * (change - front.trend), front.trend)
     trend = np.where(torn, np.float32(-1), np.clip(trend, -1, 0.5))

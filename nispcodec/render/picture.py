@@ -88,7 +88,7 @@ class Eye:
         x, y = np.meshgrid(steps, steps)
         rows, columns = edges[:, None] // self.size, edges[:, None] % self.size
         finer = self.see((columns + x.ravel()).ravel(), (rows + y.ravel()).ravel(), SUBDIVISION)
-        color[edges] = finer.color.reshape(len(edges), -1, 4).mean(axis=1)
+        color[edges] = finer.color.reshape(len(edges), SUBDIVISION**2, 4).mean(axis=1)
         return _encoded(color).reshape(self.size, self.size, 4)
 
     def pixels(self) -> Samples:

@@ -53,8 +53,10 @@ def sheet(
     _tell(progress, 1)
     rows = _rows(scenes, close_ups(scenes[0], turntable(VIEWS), around[2], CLOSE_UPS), size)
     _tell(progress, 2)
-    plots = layouts(original, decoded, frame, size)
-    rows = [a + b + [c] for a, b, c in zip(around, rows, [*plots, difference(*plots)], strict=True)]
+    rows = [[*first, *second] for first, second in zip(around, rows, strict=True)]
+    if original.has_uv.any():
+        plots = layouts(original, decoded, frame, size)
+        rows = [[*row, plot] for row, plot in zip(rows, plots, strict=True)]
     _tell(progress, 3)
     report = _numbers(original, decoded, list(zip(*around[:2], strict=True)))
     pictures = [*rows[:2], [heat(each) for each in rows[2]]]

@@ -36,7 +36,7 @@ class Space:
 
     values  float32: distance to the surface, or less
     doubt   float32: how far interpolated values may be off
-    slope   how fast the field may change near the surface: values are the field over this
+    slope   how fast the field may change near the surface: it is a distance when divided by this
     """
 
     values: Floats
@@ -79,8 +79,8 @@ def _remembered(network: Network, cells: Indices, middles: Floats, count: int) -
     # Surface is within half a cell's diagonal of such a corner.
     values = (distance_transform_edt(values) - np.sqrt(3) / 2) * 2 * LIMIT / count
     np.maximum.at(doubt.ravel(), corners, (CAUTION * off + LEAST_DOUBT)[:, None])
-    values.ravel()[used] = field
-    return Space((values / slope).astype(np.float32), doubt / np.float32(slope), slope)
+    values.ravel()[used] = field / slope
+    return Space(values.astype(np.float32), doubt / np.float32(slope), slope)
 
 
 def _crossed(network: Network, cells: Indices, count: int) -> tuple[Floats, Indices]:
