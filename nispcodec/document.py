@@ -35,12 +35,14 @@ class ChartTable:
 
     materials (k,) int32 into the document's materials; has_uv (k,) bool;
     asset UV = network UV * uv_scale + uv_offset, per axis. A chart without UV answers (0, 0).
+    With `openings` the last chart is no part of the asset: it is where the SDF closes openings.
     """
 
     materials: NDArray[np.int32]
     has_uv: NDArray[np.bool_]
     uv_offset: tuple[float, float] = (0.0, 0.0)
     uv_scale: tuple[float, float] = (1.0, 1.0)
+    openings: bool = False
 
     def __len__(self) -> int:
         return len(self.materials)
@@ -86,6 +88,9 @@ class Document:
             f"0 to {len(self.materials) - 1}",
             f"{materials.min()} to {materials.max()}",
         )
+        if self.charts.openings:
+            _demand("openings", k > 1, "two charts or more", k)
+            _demand("openings", not self.charts.has_uv[-1], "a last chart without UV", "UV")
 
     def _check_maps(self) -> None:
         for material in self.materials:

@@ -132,13 +132,3 @@ def _member(name: str, value: str, allowed: tuple[str, ...]) -> None:
 def _within(name: str, value: int, low: int, high: int) -> None:
     if not low <= value <= high:
         raise FormatError("network", name, f"{low} to {high}", value)
-
-
-def to_half(network: Network) -> Network:
-    """The network with every weight rounded to the nearest float16, still held as float32."""
-    limit = np.finfo(np.float16).max
-    rounded = {
-        name: np.clip(tensor, -limit, limit).astype(np.float16).astype(np.float32)
-        for name, tensor in network.tensors.items()
-    }
-    return Network(network.spec, rounded)

@@ -11,6 +11,11 @@ from nispcodec.fit.task import Batch
 NEAR = 0.01
 """Distances (normalised frame) well below this count in full in the relative loss."""
 
+SIGN_WEIGHT = 1.8
+"""Below 2 the loss is least where the field is the distance; above, near points are pushed away."""
+SIGN_SOFTNESS = 2e-3
+"""How sure of its sign a field should be: about this far from zero (normalised frame)."""
+
 
 def distance_error(module: Module, batch: Batch) -> Tensor:
     """Mean |f - SDF| (paper, eq. 6)."""
@@ -20,11 +25,12 @@ def distance_error(module: Module, batch: Batch) -> Tensor:
 def relative_distance_loss(module: Module, batch: Batch) -> Tensor:
     """Mean |f - SDF| / (|SDF| + NEAR): the nearer to the surface, the more an error costs.
 
-    What lies on the wrong side of zero costs twice, or a fit may settle for |SDF|.
+    The logistic loss of the sign comes on top, or the fit settles for |SDF| where detail is fine:
+    small on the surface, and never crossing zero.
     """
     field = module(batch.points)[:, 0]
-    wrong_side = functional.relu(-field * batch.sdf.sign())
-    error = (field - batch.sdf).abs() + wrong_side
+    wrong_side = functional.softplus(-field * batch.sdf.sign() / SIGN_SOFTNESS) * SIGN_SOFTNESS
+    error = (field - batch.sdf).abs() + SIGN_WEIGHT * wrong_side
     return (error / (batch.sdf.abs() + NEAR)).mean()
 
 

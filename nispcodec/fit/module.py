@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from itertools import pairwise
 
 import numpy as np
@@ -10,19 +11,19 @@ import torch
 from torch import Tensor
 from torch.nn import functional
 
-from nispcodec.network import Network, NetworkSpec
+from nispcodec.fit.quantise import Quantiser
+from nispcodec.network import Network, NetworkSpec, Weights
 
 
 class Module:
     """A network under training.
 
     Each layer is one matrix [W | b], so that a preconditioner sees weight and bias together. Sine
-    layers hold w0 W and w0 b, which saves a pass over the activations. While `halved`, it computes
-    with the weights rounded to float16, as the file will hold them; gradients pass straight
-    through the rounding.
+    layers hold w0 W and w0 b, which saves a pass over the activations. With a quantiser it computes
+    with rounded weights, as the file will hold them.
     """
 
-    halved = False
+    quantiser: Quantiser | None = None
 
     def __init__(self, spec: NetworkSpec, generator: torch.Generator, device: str) -> None:
         self.spec = spec
@@ -52,22 +53,37 @@ class Module:
             hidden = activation(_affine(matrix, hidden))
         return _OUTPUTS[self.spec.output](_affine(matrices[-1], hidden))
 
+    def quantise(self) -> None:
+        """Compute with rounded weights from now on."""
+        self.quantiser = Quantiser(self.matrices, self.table)
+
     def network(self) -> Network:
-        """The weights as they are now."""
-        tensors: dict[str, np.ndarray[tuple[int, ...], np.dtype[np.float32]]] = {}
+        """The weights as they are now; with a quantiser each a symbol times its tensor's step."""
+        tensors: dict[str, Weights] = {}
+        steps: dict[str, float] = {}
+        for name, index, columns in self._named():
+            values, rate = self.parameters[index].detach()[:, columns], self.rates[index]
+            if self.quantiser is None:
+                tensors[name] = _array(values / rate)
+                continue
+            step = self.quantiser.steps(index)[columns].reshape(-1)[0]
+            steps[name] = float(np.float32(step.item() / rate))
+            tensors[name] = _array((values / step).round()) * np.float32(steps[name])
+        return Network(self.spec, tensors, steps)
+
+    def _named(self) -> Iterator[tuple[str, int, slice | int]]:
+        """Name, parameter and columns of every tensor, in file order."""
         if self.table is not None:
-            tensors["embedding"] = _array(self.table)
-        for layer, (matrix, rate) in enumerate(zip(self.matrices, self.rates, strict=False)):
-            tensors[f"weight.{layer}"] = _array(matrix[:, :-1] / rate)
-            tensors[f"bias.{layer}"] = _array(matrix[:, -1] / rate)
-        return Network(self.spec, tensors)
+            yield "embedding", len(self.matrices), slice(None)
+        for layer in range(len(self.matrices)):
+            yield f"weight.{layer}", layer, slice(0, -1)
+            yield f"bias.{layer}", layer, -1
 
     def _used(self) -> tuple[list[Tensor], Tensor | None]:
         """The matrices and the embedding that the function is computed with."""
-        if not self.halved:
+        if self.quantiser is None:
             return self.matrices, self.table
-        pairs = zip(self.parameters, self.rates, strict=True)
-        used = [_halved(parameter, rate) for parameter, rate in pairs]
+        used = self.quantiser.rounded(self.parameters)
         return used[: len(self.matrices)], None if self.table is None else used[-1]
 
     def _encoded(self, points: Tensor, charts: Tensor | None, table: Tensor | None) -> Tensor:
@@ -84,12 +100,6 @@ class Module:
 
 def _affine(matrix: Tensor, values: Tensor) -> Tensor:
     return torch.addmm(matrix[:, -1], values, matrix[:, :-1].T)
-
-
-def _halved(parameter: Tensor, rate: float) -> Tensor:
-    """The parameter as float16 holds parameter / rate; the gradient ignores the rounding."""
-    rounded = (parameter.detach() / rate).half().float() * rate
-    return parameter + (rounded - parameter).detach()
 
 
 def _fourier(points: Tensor, levels: int) -> Tensor:
@@ -121,7 +131,7 @@ def _weight_bound(spec: NetworkSpec, layer: int, fan_in: int) -> float:
     return bound if layer < len(spec.hidden) else bound / spec.w0
 
 
-def _array(tensor: Tensor) -> np.ndarray[tuple[int, ...], np.dtype[np.float32]]:
+def _array(tensor: Tensor) -> Weights:
     return np.ascontiguousarray(tensor.detach().cpu().numpy(), dtype=np.float32)
 
 

@@ -47,14 +47,15 @@ class Schedule:
     """How long and how fast: `steps` of `batch` points; `rate` is warmed up, then held or lowered.
 
     `optimiser` is "soap" (rate warmed up, then a cosine down to a hundredth) or "adam" (rate held,
-    as the paper does). `half`: the weights will be stored as float16.
+    as the paper does). `price`: by what share of the loss one bit a weight less may raise it; 0
+    leaves the weights float32.
     """
 
     steps: int
     batch: int = 2048
     rate: float = 1e-3
     optimiser: str = "soap"
-    half: bool = True
+    price: float = 0.0
 
 
 @dataclass(frozen=True)

@@ -12,16 +12,19 @@ from torch import Tensor
 
 from nispcodec.errors import FitError
 from nispcodec.fit.module import Module
+from nispcodec.fit.quantise import Quantiser
 from nispcodec.fit.soap import Soap
 from nispcodec.fit.task import Batch, Schedule, Task
-from nispcodec.network import Network, to_half
+from nispcodec.network import Network
 from nispcodec.progress import Listener, Progress
 
 WARM_UP = 100
 CLIP = 1.0
 CHECKS = 40
 CHUNK = 25
-HALVED = 0.8
+QUANTISED = 0.5
+HARD = 0.9
+LOSS_MEMORY = 0.99
 DIVERGED = 4.0
 SETTLED = 0.25
 RETRIES = 4
@@ -36,8 +39,9 @@ def train(
 ) -> Network:
     """Fit one network; `core` is held while computing, so that tasks share the cores fairly.
 
-    A run whose held-out error explodes goes on from its best weights at half the rate. From
-    `HALVED` of the steps on, a network that will be stored as float16 learns to live with that.
+    A run whose held-out error explodes goes on from its best weights at half the rate. With a
+    price of bits the network computes with rounded weights from `QUANTISED` of the steps on, learns
+    its steps until `HARD`, and then settles on them.
     Raises FitError when lower rates do not help.
     """
     return _Run(task, seed, device, listen).fit(core)
@@ -56,41 +60,55 @@ class _Run:
         self.move = self._optimiser()
         self.best_error = math.inf
         self.best = self._weights()
+        self.loss = math.nan
 
     def fit(self, core: AbstractContextManager[object]) -> Network:
         steps = self.task.schedule.steps
         every = max(1, steps // CHECKS)
         started = time.monotonic()
-        loss = 0.0
         for step in range(0, steps, CHUNK):
             with core:
-                self._halve(step)
                 for inner in range(step, min(step + CHUNK, steps)):
-                    loss = self._step(inner)
+                    self._step(inner)
                 done = min(step + CHUNK, steps)
                 note = self._check(done) if done // every > step // every or done == steps else ""
             left = (time.monotonic() - started) / done * (steps - done)
-            self.listen(Progress(self.task.name, "fit", done, steps, loss, self.error, left, note))
+            self.listen(
+                Progress(self.task.name, "fit", done, steps, self.loss, self.error, left, note)
+            )
         self._restore()
-        network = self.module.network()
-        return to_half(network) if self.task.schedule.half else network
+        return self.module.network()
 
     error = math.nan
 
-    def _halve(self, step: int) -> None:
+    def _step(self, step: int) -> None:
         schedule = self.task.schedule
-        if schedule.half and not self.module.halved and step >= HALVED * schedule.steps:
-            self.module.halved = True
-            self.best_error, self.best = math.inf, self._weights()
-
-    def _step(self, step: int) -> float:
+        if schedule.price and step in (_at(QUANTISED, schedule), _at(HARD, schedule)):
+            self._harden()
         loss = self.task.loss(self.module, next(self.batches))
         for parameter in self.module.parameters:
             parameter.grad = None
         loss.backward()  # type: ignore[no-untyped-call]
+        self._remember(float(loss.detach()))
+        if self.module.quantiser is not None:
+            self._charge(self.module.quantiser, learn=step < _at(HARD, schedule))
         torch.nn.utils.clip_grad_norm_(self.module.parameters, CLIP)
-        self.move(self.rate * _shape(self.task.schedule, step))
-        return float(loss.detach())
+        self.move(self.rate * _shape(schedule, step))
+
+    def _harden(self) -> None:
+        """Begin a stage whose weights are not comparable with those before."""
+        if self.module.quantiser is None:
+            self.module.quantise()
+        self.best_error, self.best = math.inf, self._weights()
+
+    def _charge(self, quantiser: Quantiser, learn: bool) -> None:
+        price = self.task.schedule.price * self.loss / self.task.spec.weight_count
+        quantiser.charge(self.module.parameters, price)
+        quantiser.learn(learn)
+
+    def _remember(self, loss: float) -> None:
+        known = math.isfinite(self.loss)
+        self.loss = LOSS_MEMORY * self.loss + (1 - LOSS_MEMORY) * loss if known else loss
 
     @torch.no_grad()
     def _check(self, done: int) -> str:
@@ -131,12 +149,21 @@ class _Run:
         return move
 
     def _weights(self) -> list[Tensor]:
-        return [parameter.detach().clone() for parameter in self.module.parameters]
+        return [tensor.detach().clone() for tensor in self._learned()]
+
+    def _learned(self) -> list[Tensor]:
+        quantiser = self.module.quantiser
+        steps = [] if quantiser is None else [quantiser.log_steps]
+        return [*self.module.parameters, *steps]
 
     @torch.no_grad()
     def _restore(self) -> None:
-        for parameter, kept in zip(self.module.parameters, self.best, strict=True):
-            parameter.copy_(kept)
+        for tensor, kept in zip(self._learned(), self.best, strict=True):
+            tensor.copy_(kept)
+
+
+def _at(share: float, schedule: Schedule) -> int:
+    return int(share * schedule.steps)
 
 
 def _shape(schedule: Schedule, step: int) -> float:

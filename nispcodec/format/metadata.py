@@ -52,6 +52,7 @@ def encode(document: Document) -> bytes:
         8: ([encode_texture(texture) for texture in document.textures], []),
         9: (float(document.shell), 0.0),
         10: (measures.encode(document.info), {}),
+        11: (table.openings, False),
     }
     return canonical.encode(META, sparse(fields))
 
@@ -92,6 +93,7 @@ def _decode_charts(record: Record, count: int, materials: int) -> ChartTable:
         has_uv=_flags(record, flags, count),
         uv_offset=(u, v),
         uv_scale=(scale_u, scale_v),
+        openings=record.take(11, "openings", bool, False),
     )
     if indices and not table.materials.any():
         raise record.error("chart_materials", "absent, being all 0", "present")

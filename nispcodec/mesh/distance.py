@@ -40,9 +40,7 @@ class DistanceField:
         """
         points = np.ascontiguousarray(points, dtype=np.float64)
         walls, sheets = self._walls.closest(points), self._sheets.closest(points)
-        inside = np.zeros(len(points), dtype=bool)
-        if signed:
-            inside = np.abs(self.solid.winding.at(points)) > 0.5
+        inside = self.inside(points) if signed else np.zeros(len(points), dtype=bool)
         distance = np.where(inside, -walls.sdf, walls.sdf)
         thick = sheets.sdf - SHELL
         nearer = thick < distance
@@ -51,6 +49,10 @@ class DistanceField:
             piece=np.where(nearer, sheets.piece, walls.piece),
             point=np.where(nearer[:, None], sheets.point, walls.point),
         )
+
+    def inside(self, points: FloatArray) -> NDArray[np.bool_]:
+        """Which of (n, 3) points lie inside the bodies, sheets left out."""
+        return np.abs(self.solid.winding.at(points)) > 0.5
 
 
 class _Tree:

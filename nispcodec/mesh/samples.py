@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,6 +11,7 @@ from nispcodec.asset import FloatArray, IndexArray, TexturedMesh
 from nispcodec.document import ChartTable, Frame
 from nispcodec.mesh.charts import Charts, merge_distant, split_charts
 from nispcodec.mesh.distance import Closest, DistanceField
+from nispcodec.mesh.openings import crossings, spread_over
 from nispcodec.mesh.self_seams import split_self_seams
 from nispcodec.mesh.solid import Triangles, area, build_solid
 
@@ -22,6 +23,13 @@ CUBE = 1.05
 
 MERGE_POINTS = 30_000
 MERGE_RARE = 20
+
+OPENING_PROBES = 50_000
+OPENING_SHARE = 5e-4
+"""From this share of probes near the surface that cross a membrane on, openings get a chart."""
+
+MEMBRANE_JITTER = 5e-3
+"""How far off a membrane (normalised frame) a network may put it."""
 
 Floats = NDArray[np.float32]
 
@@ -60,7 +68,7 @@ class Sampler:
     """Draws and labels points around one mesh.
 
     `gap` > 0 cuts charts that meet themselves (`split_self_seams`), then lets charts that are
-    further apart than that share a number (`merge_distant`).
+    further apart than that share a number (`merge_distant`), and gives openings a chart.
     """
 
     def __init__(self, mesh: TexturedMesh, seed: int, gap: float = 0.0) -> None:
@@ -77,6 +85,9 @@ class Sampler:
         if gap > 0:
             self.charts = self._merged(gap)
         self.table = chart_table(mesh, self.charts)
+        self._crossings = np.zeros((0, 3))
+        if gap > 0:
+            self._find_openings()
 
     def near(self, count: int, spread: float, signed: bool = True) -> SampleSet:
         """Points whose |SDF| is exponentially distributed with mean `spread` (exact on a plane).
@@ -107,6 +118,20 @@ class Sampler:
         """Points uniform by area on the outer faces and sheets."""
         return self.label(self._surface(count)[0], signed=False)
 
+    def membrane(self, count: int) -> SampleSet:
+        """Points near where the SDF closes openings, on the openings' chart; 0 without openings."""
+        if not self.table.openings:
+            return self.label(np.zeros((0, 3)))
+        points = spread_over(self.field, self._crossings, count, self._random)
+        away = 0.3 * self.field.closest(points, signed=False).sdf[:, None]
+        points += self._random.normal(size=points.shape) * np.clip(away, 0, MEMBRANE_JITTER)
+        samples = self.label(points, signed=False)
+        return replace(
+            samples,
+            chart=np.full(len(points), len(self.table) - 1, np.int32),
+            uv=np.zeros_like(samples.uv),
+        )
+
     def label(self, points: FloatArray, signed: bool = True) -> SampleSet:
         """Distance, chart and UV at each point's closest surface point (paper, eq. 2)."""
         closest = self.field.closest(points, signed)
@@ -117,6 +142,17 @@ class Sampler:
             chart=self.charts.face_charts[face],
             uv=self._network_uv(closest, face),
         )
+
+    def _find_openings(self) -> None:
+        probes = self.near(OPENING_PROBES, 1 / BETA, signed=False).points.astype(np.float64)
+        self._crossings = crossings(self.field, probes, self._random)
+        if len(self._crossings) >= OPENING_SHARE * len(probes):
+            self.table = replace(
+                self.table,
+                materials=np.append(self.table.materials, np.int32(0)),
+                has_uv=np.append(self.table.has_uv, False),
+                openings=True,
+            )
 
     def _surface(self, count: int) -> tuple[FloatArray, NDArray[np.int64]]:
         """Points (count, 3) uniform by area, and the pieces they lie on."""

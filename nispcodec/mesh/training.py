@@ -16,6 +16,7 @@ NEAR_COUNT = 100_000
 TIGHT_COUNT = 240_000
 CUBE_COUNT = 60_000
 SKIN_COUNT = 250_000
+MEMBRANE_COUNT = 12_000
 HELD_OUT_COUNT = 20_000
 PAPER_COUNT = 1_000_000
 
@@ -39,7 +40,9 @@ def training_sets(sampler: Sampler) -> TrainingSets:
     )
     return TrainingSets(
         distance=SampleSet.joined(distance),
-        skin=sampler.near(SKIN_COUNT, SKIN, signed=False),
+        skin=SampleSet.joined(
+            (sampler.near(SKIN_COUNT, SKIN, signed=False), sampler.membrane(MEMBRANE_COUNT))
+        ),
         held_distance=sampler.near(HELD_OUT_COUNT, SKIN),
         held_skin=sampler.surface(HELD_OUT_COUNT),
     )

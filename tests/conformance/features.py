@@ -176,6 +176,9 @@ def _tables() -> Iterator[tuple[str, bytes]]:
            for name, tensor in base.chart.tensors.items()}  # fmt: skip
     yield "charts-tie", pack(dataclasses.replace(base, chart=Network(base.chart.spec, tie)))
     yield "shell", pack(dataclasses.replace(plain(), shell=0.015625))
+    flags = np.array([1, 0], np.bool_)
+    opened = dataclasses.replace(base.charts, has_uv=flags, openings=True)
+    yield "openings", pack(dataclasses.replace(base, charts=opened))
 
 
 def _materials() -> Iterator[tuple[str, bytes]]:
@@ -212,7 +215,8 @@ def _materials() -> Iterator[tuple[str, bytes]]:
 
 def _containers() -> Iterator[tuple[str, bytes]]:
     info: dict[str, str | int | float | bool] = {
-        "tool": "conformance", "seed": -1, "large": 2**64 - 1, "error": 4e-4, "ok": True
+        "tool": "conformance", "seed": -1, "large": 2**64 - 1, "error": 4e-4, "ok": True,
+        "hidden_share": 0.0129, "uv_error_mean": 3.34e-6,
     }  # fmt: skip
     yield "info", pack(dataclasses.replace(plain(), info=info))
     extra = {"AAAA": b"", "ZZ99": b"kept, whatever it is " * 20}

@@ -213,6 +213,8 @@ def _fields() -> Iterator[Malformed]:
         "chart-has-uv-default": ({5: b"\x80"}, "document.chart_has_uv"),
         "uv-map-default": ({6: [0.0, 0.0, 1.0, 1.0]}, "document.uv_map"),
         "shell-integer": ({9: 1}, "document.shell"),
+        "openings-default": ({11: False}, "document.openings"),
+        "openings-alone": ({11: True}, "document.openings"),
         "info-empty": ({10: {}}, "document.info"),
         "info-list": ({10: [1]}, "document.info"),
         "info-key-reserved": ({10: {0: 1}}, "document.info.0"),

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 from hypothesis import strategies as st
 
@@ -58,7 +60,7 @@ def tiny() -> Document:
 def full() -> Document:
     """Three charts, all networks, two materials, a texture, an unknown section."""
     charts = ChartTable(
-        np.array([0, 1, 0], np.int32), np.array([True, True, False]), (-0.5, 0.25), (2.0, 1.5)
+        np.array([0, 1, 0], np.int32), np.array([True, True, False]), (-0.5, 0.25), (2.0, 1.5), True
     )
     wood = TextureMap(0, ("clamp", "mirror"), "nearest", 0.5)
     return Document(
@@ -154,6 +156,8 @@ def documents(draw: st.DrawFn) -> Document:
         draw(st.tuples(_NUMBERS, _NUMBERS)),
         draw(st.tuples(_NUMBERS, _NUMBERS)),
     )
+    if count > 1 and not table.has_uv[-1]:
+        table = replace(table, openings=draw(st.booleans()))
     codes = st.from_regex(r"[A-Z0-9]{4}", fullmatch=True)
     unknown = codes.filter(lambda code: code not in ("META", "NETS", "TXTR"))
     scalars = st.one_of(st.integers(-(2**63), 2**64 - 1), _NUMBERS, _NAMES, st.booleans())
@@ -181,6 +185,7 @@ def assert_same(first: Document, second: Document) -> None:
     assert (first.charts.has_uv == second.charts.has_uv).all()
     assert first.charts.uv_offset == second.charts.uv_offset
     assert first.charts.uv_scale == second.charts.uv_scale
+    assert first.charts.openings == second.charts.openings
     assert first.materials == second.materials
     assert first.textures == second.textures
     assert (first.shell, first.extra) == (second.shell, second.extra)

@@ -1,0 +1,97 @@
+"""Quantisation-aware training: the network computes with rounded weights and learns its steps.
+
+Weights take straight-through gradients (Bengio et al. 2013), steps those of Esser et al., "Learned
+Step Size Quantization", 2020. The rate is the entropy of a Gaussian of the weights' variance on the
+step's grid; its gradient makes steps coarser and weights smaller, as far as the distortion allows.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import torch
+from torch import Tensor
+
+STEP_RATE = 0.01
+"""Learning rate of the steps, in octaves."""
+
+FIRST_BITS = 8.0
+GAUSSIAN_BITS = 0.5 * math.log2(2 * math.pi * math.e)
+FLOOR = 1e-6
+
+
+class Quantiser:
+    """One step for the weights and one for the biases of each matrix, one for an embedding."""
+
+    def __init__(self, matrices: list[Tensor], table: Tensor | None) -> None:
+        self.groups = [_columns(matrix, 2 * layer) for layer, matrix in enumerate(matrices)]
+        if table is not None:
+            self.groups.append(torch.full((table.shape[1],), 2 * len(matrices)).to(table.device))
+        parameters = matrices if table is None else [*matrices, table]
+        self.counts = self._sums([torch.ones_like(parameter) for parameter in parameters])
+        spread = 0.5 * torch.log2(self._sums([p.detach().square() for p in parameters]))
+        first = spread - 0.5 * torch.log2(self.counts) + GAUSSIAN_BITS - FIRST_BITS
+        self.log_steps = first.clamp(min=math.log2(FLOOR)).requires_grad_()
+        self._adam = torch.optim.Adam([self.log_steps], lr=STEP_RATE, betas=(0.95, 0.99))
+
+    def rounded(self, parameters: list[Tensor]) -> list[Tensor]:
+        """The parameters as the file will hold them."""
+        pairs = zip(parameters, self.groups, strict=True)
+        return [_Rounded.apply(parameter, self.log_steps, group) for parameter, group in pairs]
+
+    def steps(self, parameter: int) -> Tensor:
+        """The step of each column of one parameter."""
+        return torch.exp2(self.log_steps.detach())[self.groups[parameter]]
+
+    @torch.no_grad()
+    def charge(self, parameters: list[Tensor], price: float) -> float:
+        """Add the gradient of `price` times the rate; returns the rate, bits a weight."""
+        power = self._sums([parameter.square() for parameter in parameters]) / self.counts
+        power += FLOOR**2
+        excess = 2 * (0.5 * torch.log2(power) - self.log_steps + GAUSSIAN_BITS)
+        slope = torch.sigmoid(excess)
+        _add(self.log_steps, -price * self.counts * slope)
+        pull = price * slope / (power * math.log(2))
+        for parameter, group in zip(parameters, self.groups, strict=True):
+            _add(parameter, parameter * pull[group])
+        bits = self.counts * torch.nn.functional.softplus(excess) / 2
+        return float(bits.sum() / self.counts.sum())
+
+    def learn(self, moving: bool) -> None:
+        """Move the steps along their gradient, unless they are settled; forget the gradient."""
+        if moving:
+            self._adam.step()
+        self.log_steps.grad = None
+
+    def _sums(self, values: list[Tensor]) -> Tensor:
+        """The sum of every group's values."""
+        joined = torch.cat([value.sum(0) for value in values])
+        index = torch.cat(self.groups)
+        return joined.new_zeros(int(index.max()) + 1).index_add_(0, index, joined)
+
+
+class _Rounded(torch.autograd.Function):
+    @staticmethod
+    def forward(ctx: Any, parameter: Tensor, log_steps: Tensor, group: Tensor) -> Tensor:
+        steps = torch.exp2(log_steps)[group]
+        rounded = (parameter / steps).round_().mul_(steps)
+        ctx.kept = rounded - parameter, group, len(log_steps)
+        return rounded
+
+    @staticmethod
+    def backward(ctx: Any, *gradients: Tensor) -> tuple[Tensor, Tensor, None]:
+        error, group, count = ctx.kept
+        along = (gradients[0] * error).sum(0) * math.log(2)
+        return gradients[0], along.new_zeros(count).index_add_(0, group, along), None
+
+
+def _columns(matrix: Tensor, first: int) -> Tensor:
+    """Group of each column of [W | b]."""
+    group = torch.full((matrix.shape[1],), first, device=matrix.device)
+    group[-1] = first + 1
+    return group
+
+
+def _add(tensor: Tensor, gradient: Tensor) -> None:
+    tensor.grad = gradient if tensor.grad is None else tensor.grad.add_(gradient)

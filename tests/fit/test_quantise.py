@@ -1,0 +1,96 @@
+"""Quantised training: weights on the grid of their steps, steps that follow the price."""
+
+from __future__ import annotations
+
+import threading
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import torch
+
+from nispcodec.fit.module import Module
+from nispcodec.fit.quantise import Quantiser
+from nispcodec.fit.train import train
+from nispcodec.network import NetworkSpec
+from nispcodec.progress import silent
+from tests.fit.test_train import sdf_task
+
+UV = NetworkSpec((6, 5), 2, conditioning="embedding", charts=4, embedding=3)
+
+
+def quantised_module() -> Module:
+    module = Module(UV, torch.Generator().manual_seed(0), "cpu")
+    module.quantise()
+    return module
+
+
+def test_every_tensor_is_symbols_times_its_step() -> None:
+    network = quantised_module().network()
+    assert set(network.steps) == set(UV.shapes)
+    for name, tensor in network.tensors.items():
+        symbols = np.rint(tensor / np.float32(network.steps[name]))
+        assert np.array_equal(tensor, symbols.astype(np.float32) * np.float32(network.steps[name]))
+
+
+def test_training_computes_what_the_file_will_hold() -> None:
+    module = quantised_module()
+    points = torch.rand(20, 3, generator=torch.Generator().manual_seed(1))
+    charts = torch.arange(20) % 4
+    stored = Module(UV, torch.Generator(), "cpu")
+    for index, (weight, bias) in enumerate(module.network().layers):
+        joined = np.concatenate([weight, bias[:, None]], axis=1) * stored.rates[index]
+        stored.matrices[index].data = torch.from_numpy(joined.astype(np.float32))
+    assert stored.table is not None
+    stored.table.data = torch.from_numpy(module.network().tensors["embedding"])
+    expected = stored(points, charts).detach().numpy()
+    assert module(points, charts).detach().numpy() == pytest.approx(expected, abs=1e-4)
+
+
+def test_the_gradient_of_a_step_is_that_of_the_rounding() -> None:
+    """Without a change of symbols the rounded weight is linear in the step."""
+    matrix = torch.tensor([[0.31, -0.7]], requires_grad=True)
+    quantiser = Quantiser([matrix], None)
+    (rounded,) = quantiser.rounded([matrix])
+    rounded.sum().backward()
+    with torch.no_grad():
+        error = (rounded - matrix)[0]
+    assert matrix.grad is not None
+    assert quantiser.log_steps.grad is not None
+    assert torch.equal(matrix.grad, torch.ones(1, 2))
+    assert torch.allclose(quantiser.log_steps.grad, error * np.log(2))
+
+
+def test_the_charge_is_the_gradient_of_the_rate() -> None:
+    generator = torch.Generator().manual_seed(0)
+    matrix = torch.randn(5, 4, generator=generator).requires_grad_()
+    quantiser = Quantiser([matrix], None)
+    quantiser.charge([matrix], 1.0)
+    assert matrix.grad is not None
+    assert quantiser.log_steps.grad is not None
+    for tensor, gradient, index in (
+        (matrix.data, matrix.grad.clone(), (2, 1)),
+        (quantiser.log_steps.data, quantiser.log_steps.grad.clone(), (0,)),
+    ):
+        rates = []
+        for sign in (1, -1):
+            tensor[index] += sign * 1e-2
+            rates.append(20 * quantiser.charge([matrix], 0.0))
+            tensor[index] -= sign * 1e-2
+        assert float(gradient[index]) == pytest.approx((rates[0] - rates[1]) / 2e-2, rel=0.02)
+
+
+def bits(price: float) -> float:
+    task = sdf_task(400)
+    task = replace(task, schedule=replace(task.schedule, price=price))
+    network = train(task, 0, "cpu", threading.Lock(), silent)
+    tensor, step = network.tensors["weight.1"], network.steps["weight.1"]
+    return float(np.log2(tensor.std() / step))
+
+
+def test_a_higher_price_buys_fewer_bits() -> None:
+    assert bits(0.3) < bits(0.003) - 0.5
+
+
+def test_without_a_price_the_weights_stay_float() -> None:
+    assert not train(sdf_task(50), 0, "cpu", threading.Lock(), silent).steps
