@@ -19,7 +19,6 @@ import numpy as np
 
 from benchmarks.machine import commit, machine, versions
 from benchmarks.measure import Run, run
-from benchmarks.render import Scene, turntable
 from nispcodec.asset import TexturedMesh
 from nispcodec.decode.model import NispModel
 from nispcodec.format import unpack
@@ -27,11 +26,14 @@ from nispcodec.mesh.load import load_mesh
 from nispcodec.metrics.compare import compare
 from nispcodec.metrics.pictures import compare_pictures
 from nispcodec.metrics.surface import frame_of
+from nispcodec.render.camera import turntable
+from nispcodec.render.views import on_white, render_views
 
 RESULTS = "benchmarks/results/main_job.json"
 NISP = Path(sys.executable).with_name("nisp")
 PRECISE = {"spot", "food_apple_01", "chess_king", "tea_set_01"}
 LARGE = {"flight_helmet", "gz_polaris"}
+VIEWS = 4
 
 Record = dict[str, Any]
 
@@ -109,9 +111,10 @@ def distortion(original: TexturedMesh, decoded: TexturedMesh, model: Path) -> Re
 
 def pictures(original: TexturedMesh, decoded: TexturedMesh) -> dict[str, float]:
     """Mean PSNR and SSIM over the fixed views."""
-    frame = frame_of(original)
-    scenes = Scene(original, frame), Scene(decoded, frame)
-    views = [compare_pictures(*(s.render(view) for s in scenes)) for view in turntable()]
+    frame, around = frame_of(original), turntable(VIEWS)
+    drawn = (render_views(mesh, around, frame=frame) for mesh in (original, decoded))
+    pairs = zip(*drawn, strict=True)
+    views = [compare_pictures(*map(on_white, pair)) for pair in pairs]
     return {name: float(np.mean([view[name] for view in views])) for name in views[0]}
 
 

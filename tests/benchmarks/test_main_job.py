@@ -7,8 +7,6 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner
 
-pytest.importorskip("embreex", reason="the main job draws pictures: extra `bench`")
-
 from benchmarks import main_job
 from benchmarks.machine import commit, machine, versions
 from benchmarks.main_job import Target, main, table, targets
