@@ -1,0 +1,219 @@
+"""The paper's comparisons: UV by chart against UV without charts and against a network of colours.
+
+    python -m benchmarks.paper_pictures ../shared/assets/spot/spot.obj --model spot.nisp
+
+Two networks are fitted to the asset, with the schedule of the preset's UV network: "unconditioned",
+from a point to its UV with no chart to tell; and "colour" (OverfitColor), from a point to the base
+colour, of as many weights as the model's chart and UV networks have together. Neither is quantised.
+Writes the JSON and one picture, unlit: original, ours, unconditioned, colour.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import click
+import numpy as np
+from torch import Tensor
+
+import nispcodec
+from benchmarks.machine import commit, machine, versions
+from nispcodec.asset import TexturedMesh
+from nispcodec.decode.evaluate import evaluate
+from nispcodec.decode.model import NispModel
+from nispcodec.fit.module import Module
+from nispcodec.fit.parallel import fit_networks
+from nispcodec.fit.presets import tasks_for
+from nispcodec.fit.task import Batch, Task
+from nispcodec.mesh.load import load_mesh
+from nispcodec.mesh.samples import Sampler, SampleSet
+from nispcodec.mesh.training import training_sets
+from nispcodec.metrics.color import color_at
+from nispcodec.metrics.parameterisation import distortion_summary
+from nispcodec.metrics.pictures import compare_pictures
+from nispcodec.metrics.psnr import psnr
+from nispcodec.metrics.sides import sides_of
+from nispcodec.metrics.surface import Surface
+from nispcodec.network import Network, NetworkSpec
+from nispcodec.output import write_atomic
+from nispcodec.progress import Progress
+from nispcodec.render.camera import Camera, turntable
+from nispcodec.render.fragments import Floats, Indices, Scene
+from nispcodec.render.images import image_bytes
+from nispcodec.render.views import scene_of
+
+RESULTS = Path("benchmarks/results/paper_pictures.json")
+POINTS, VIEWS, SIZE = 100_000, 4, 320
+
+Painter = Callable[[Floats], Floats]
+"""Points (n, 3), normalised frame -> base colours (n, 3), sRGB-encoded."""
+
+
+def target_error(module: Module, batch: Batch) -> Tensor:
+    """Mean absolute error of a network that is told the point alone; `uv` holds its targets."""
+    return (module(batch.points) - batch.uv).abs().mean()
+
+
+def baselines(mesh: TexturedMesh, model: NispModel, seed: int, threads: int) -> dict[str, Network]:
+    """The networks "unconditioned" and "colour", fitted."""
+    sampler = Sampler(mesh, seed, gap=0.1)
+    sets = training_sets(sampler)
+    (uv,) = [each for each in tasks_for("balanced", sampler, sets) if each.name == "uv"]
+    surface = Surface.of(mesh, sampler.frame)
+    plain = replace(uv.spec, conditioning="none", charts=0, embedding=0)
+    tasks = [
+        _without_charts(uv, "unconditioned", plain, sets.skin, sets.held_skin),
+        _without_charts(
+            uv,
+            "colour",
+            _of_size(sum(model.document.networks[name].spec.weight_count for name in _UV)),
+            _coloured(sets.skin, surface),
+            _coloured(sets.held_skin, surface),
+        ),
+    ]
+    return fit_networks(tasks, seed, "cpu", threads, _told)
+
+
+_UV = ("chart", "uv")
+
+
+def _without_charts(
+    uv: Task, name: str, spec: NetworkSpec, samples: SampleSet, held_out: SampleSet
+) -> Task:
+    schedule = replace(uv.schedule, price=0.0)
+    return Task(name, spec, samples, held_out, target_error, target_error, schedule)
+
+
+def _of_size(weights: int) -> NetworkSpec:
+    """Four layers, as wide as so many weights allow."""
+    widths = range(1, 200)
+    specs = (NetworkSpec(hidden=(width,) * 4, outputs=3) for width in widths)
+    return [each for each in specs if each.weight_count <= weights][-1]
+
+
+def _coloured(samples: SampleSet, surface: Surface) -> SampleSet:
+    return replace(samples, uv=_original_color(surface)(samples.points))
+
+
+def _original_color(surface: Surface) -> Painter:
+    def paint(points: Floats) -> Floats:
+        closest = surface.closest(points.astype(np.float64))
+        return color_at(surface, closest)[:, :3]
+
+    return paint
+
+
+def _told(progress: Progress) -> None:
+    if progress.step % 500 == 0:
+        click.echo(f"{progress.network} {progress.step}/{progress.steps}", err=True)
+
+
+def without_charts(model: NispModel, uv: Network) -> NispModel:
+    """The model with another UV network; charts still say which material a point has."""
+    return NispModel(replace(model.document, uv=uv, info={}))
+
+
+@dataclass(frozen=True)
+class Sight:
+    """Where the model's surface is seen: pixels (n,) of a picture SIZE wide, points (n, 3)."""
+
+    pixels: Indices
+    points: Floats
+
+    def painted(self, paint: Painter) -> Floats:
+        """(SIZE, SIZE, 3): the colours of the points on white, unlit."""
+        colors = np.ones((SIZE * SIZE, 3), np.float32)
+        colors[self.pixels] = np.clip(paint(self.points), 0, 1)
+        return colors.reshape(SIZE, SIZE, 3)
+
+
+def sight(scene: Scene, camera: Camera) -> Sight:
+    """What the camera sees of the scene."""
+    middle = (np.arange(SIZE) + 0.5) / SIZE
+    x, y = np.meshgrid(middle, middle)
+    directions = camera.directions(x.ravel(), y.ravel())
+    origins = np.tile(camera.eye.astype(np.float32), (len(directions), 1))
+    found = scene.cast(origins, directions, 0).fragments
+    return Sight(
+        found.rays, origins[found.rays] + found.distances[:, None] * directions[found.rays]
+    )
+
+
+def compared(
+    mesh: TexturedMesh, model: NispModel, networks: dict[str, Network]
+) -> tuple[dict[str, Any], Floats]:
+    """The numbers, and the picture of all four side by side."""
+    surface = Surface.of(mesh, model.document.frame)
+    free = without_charts(model, networks["unconditioned"])
+    original = _original_color(surface)
+    painters: dict[str, Painter] = {
+        "ours": lambda points: model.color(points, "normalised")[:, :3],
+        "unconditioned": lambda points: free.color(points, "normalised")[:, :3],
+        "colour": lambda points: evaluate(networks["colour"], points),
+    }
+    points = surface.sample(POINTS, np.random.default_rng(1))
+    points = points[sides_of(surface, points).outer]
+    places, wanted = points.positions.astype(np.float32), color_at(surface, points)[:, :3]
+    scene = scene_of(model)
+    sights = [sight(scene, camera) for camera in turntable(VIEWS)]
+    truth = [each.painted(original) for each in sights]
+    numbers: dict[str, Any] = {}
+    columns = [truth[0]]
+    for name, paint in painters.items():
+        off = np.clip(paint(places), 0, 1).astype(np.float64) - wanted
+        drawn = [each.painted(paint) for each in sights]
+        columns.append(drawn[0])
+        numbers[name] = {"color_psnr": psnr(float((off**2).mean()), 1.0), **_means(truth, drawn)}
+    distortion = {
+        "original": distortion_summary(surface),
+        "ours": distortion_summary(_decoded(model)),
+        "unconditioned": distortion_summary(_decoded(free)),
+    }
+    return {**numbers, "distortion": distortion}, np.concatenate(columns, axis=1)
+
+
+def _means(truth: list[Floats], drawn: list[Floats]) -> dict[str, float]:
+    found = [compare_pictures(*pair) for pair in zip(truth, drawn, strict=True)]
+    mse = [255**2 * float(((a - b) ** 2).mean()) for a, b in zip(truth, drawn, strict=True)]
+    means = {name: float(np.mean([each[name] for each in found])) for name in found[0]}
+    return {"picture_mse": float(np.mean(mse)), **{f"picture_{k}": v for k, v in means.items()}}
+
+
+def _decoded(model: NispModel) -> Surface:
+    return Surface.of(model.to_mesh(), model.document.frame)
+
+
+@click.command()
+@click.argument("source", type=click.Path(path_type=Path, exists=True))
+@click.option("--model", type=click.Path(path_type=Path, exists=True), required=True)
+@click.option("--seed", type=click.IntRange(0), default=0, show_default=True)
+@click.option("--threads", type=click.IntRange(1), default=2, show_default=True)
+@click.option("-o", "--output", type=click.Path(path_type=Path), default=RESULTS, show_default=True)
+def main(source: Path, model: Path, seed: int, threads: int, output: Path) -> None:
+    """Compare on SOURCE, add the numbers to the JSON, and write the picture beside it."""
+    mesh, loaded = load_mesh(source), nispcodec.load(model)
+    if not set(_UV) <= set(loaded.document.networks):
+        raise click.UsageError(f"{model}: expected charts and UVs")
+    networks = baselines(mesh, loaded, seed, threads)
+    numbers, drawn = compared(mesh, loaded, networks)
+    known = json.loads(output.read_text())["assets"] if output.exists() else {}
+    known[source.stem] = {
+        "commit": commit(),
+        "weights": {name: each.spec.weight_count for name, each in networks.items()},
+        **numbers,
+    }
+    everything = {"machine": machine(), "versions": versions(), "assets": known}
+    output.parent.mkdir(parents=True, exist_ok=True)
+    write_atomic(output, json.dumps(everything, indent=1).encode() + b"\n")
+    write_atomic(
+        output.with_name(f"paper_pictures_{source.stem}.webp"), image_bytes([drawn], ".webp")
+    )
+    click.echo(json.dumps(known[source.stem], indent=1))
+
+
+if __name__ == "__main__":
+    main()
