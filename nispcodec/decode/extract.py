@@ -43,15 +43,27 @@ def extract(network: Network, resolution: int) -> Surface:
     `resolution` is the least number of cells along an edge of the cube: it is rounded up, by an
     eighth at most, so that blocks halve evenly and none reaches out of the cube.
     """
-    across = -(-resolution // BLOCK)
-    levels = max(0, int(np.ceil(np.log2(across / ROOT))))
-    root = -(-across // 2**levels)
-    cell = 2 * LIMIT / (root * 2**levels * BLOCK)
+    root, levels, cell = _grid(resolution)
     blocks = _surface_blocks(network, root, levels, cell)
     values = _block_values(network, blocks, root * 2**levels, cell)
     edges, ends, faces = _polygons(blocks, values)
     crossings = _crossings(edges, ends, cell)
     return Surface(onto_surface(network, crossings, cell / 2, NEWTON_STEPS), faces, cell)
+
+
+def near_surface(network: Network, resolution: int) -> tuple[Floats, float]:
+    """Centres (b, 3) of the blocks that `extract` would look into, and the blocks' size."""
+    root, levels, cell = _grid(resolution)
+    blocks = _surface_blocks(network, root, levels, cell)
+    return _centres(blocks, BLOCK * cell), BLOCK * cell
+
+
+def _grid(resolution: int) -> tuple[int, int, float]:
+    """Blocks along the cube at first, how often they are halved, and the size of a cell."""
+    across = -(-resolution // BLOCK)
+    levels = max(0, int(np.ceil(np.log2(across / ROOT))))
+    root = -(-across // 2**levels)
+    return root, levels, 2 * LIMIT / (root * 2**levels * BLOCK)
 
 
 def _surface_blocks(network: Network, root: int, levels: int, cell: float) -> Ids:

@@ -11,15 +11,17 @@ from nispcodec.asset import IndexArray, TexturedMesh
 from nispcodec.decode.atlas import asset_uv
 from nispcodec.decode.charting import vertex_charts
 from nispcodec.decode.components import ExtractionReport, without_noise
-from nispcodec.decode.extract import LIMIT, Surface, extract
+from nispcodec.decode.extract import LIMIT, Surface, extract, near_surface
 from nispcodec.decode.seams import cut_along_seams
 from nispcodec.decode.simplify import deviation, simplest, simplified
+from nispcodec.decode.thinness import thin_share
 from nispcodec.document import Document
 
-# The default resolution: as fine as FACES triangles allow, within LEAST and MOST.
-FACES = 200_000
 LEAST, MOST = 256, 512
-COARSE = 64
+# Where this share of the surface has walls thinner than a cell, up to FACES triangles are spent.
+THIN = 0.02
+FACES = 500_000
+FACES_A_BLOCK = 15
 MAX_RESOLUTION = 2048
 FITTINGS = 4
 
@@ -49,14 +51,11 @@ def textured_mesh(
 
 
 def default_resolution(document: Document) -> int:
-    """256; finer where the surface is small or thin; one cell for the half thickness of sheets.
-
-    The faces of a coarse extraction, times 4 for each doubling, tell those of a fine one. Slender
-    assets, and those whose walls a coarse grid mostly misses, have few: they get up to 512.
-    """
-    coarse = len(extract(document.sdf, COARSE).faces)
-    affordable = int(COARSE * np.sqrt(FACES / max(coarse, 1)))
-    cells = min(max(LEAST, affordable), MOST)
+    """256; for thin walls up to 512, as triangles allow; one cell for sheets' half thickness."""
+    points, size = near_surface(document.sdf, LEAST)
+    thin = thin_share(document.sdf, points, size, 2 * LIMIT / LEAST)
+    affordable = int(LEAST * np.sqrt(FACES / (FACES_A_BLOCK * max(len(points), 1))))
+    cells = min(max(LEAST, affordable), MOST) if thin > THIN else LEAST
     sheets = int(np.ceil(2 * LIMIT / document.shell)) if document.shell else 0
     return min(max(cells, sheets), MAX_RESOLUTION)
 
@@ -98,8 +97,8 @@ def _opened(document: Document, surface: Surface, charts: IndexArray) -> tuple[S
     if not document.charts.openings:
         return surface, charts
     kept = charts != len(document.charts) - 1
-    used, faces = np.unique(surface.faces[kept], return_inverse=True)
-    faces = faces.reshape(-1, 3).astype(np.int32)
+    used, corners = np.unique(surface.faces[kept], return_inverse=True)
+    faces = corners.reshape(-1, 3).astype(np.int32)
     return Surface(surface.positions[used], faces, surface.cell), charts[kept]
 
 

@@ -106,7 +106,7 @@ class NispModel:
         """The surface as a textured mesh in the world frame.
 
         `resolution`: cells along the edge of the cube that is extracted; default 256, up to 512
-        for slender assets and thin walls, more for thin sheets. `faces`: the most triangles to
+        where walls are thin, more for thin sheets. `faces`: the most triangles to
         return; the surface is simplified to fit. `error`: as few triangles as keep the mean
         distance to the field's surface below it, normalised frame. `keep_spurious` keeps the
         components that are recognised as noise of the field; a warning of the mesh counts those

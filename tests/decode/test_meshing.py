@@ -4,28 +4,47 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
+from nispcodec.decode.extract import near_surface
 from nispcodec.decode.meshing import LEAST, MOST, default_resolution
+from nispcodec.decode.thinness import thin_share
 from nispcodec.network import Network
 from tests import tiny
 
 
-def test_default_resolution_follows_the_asset() -> None:
-    wanted = [default_resolution(tiny.document(tiny.octahedron(size))) for size in (1, 0.7, 0.1)]
-    assert wanted[0] == LEAST < wanted[1] < wanted[2] == MOST
+def plate(thickness: float) -> Network:
+    """max(|z| - thickness / 2, (|x| + |y|) / 2 - 0.2): a square plate, solid inside."""
+    axes = np.vstack([np.eye(3), -np.eye(3)])
+    ways = np.array([[0, 0, 1, 0, 0, 1], [0.5, 0.5, 0, 0.5, 0.5, 0]])
+    bias = np.array([-thickness / 2, -0.2])
+    # max(a, b) = b + relu(a - b), and b = relu(b) - relu(-b).
+    second = np.vstack([ways[0] - ways[1], ways[1], -ways[1]])
+    seconds = np.array([bias[0] - bias[1], bias[1], -bias[1]])
+    last = np.array([[1.0, 1.0, -1.0]])
+    return tiny.relu_network([(axes, np.zeros(6)), (second, seconds), (last, np.zeros(1))])
+
+
+@pytest.mark.parametrize(("thickness", "least", "most"), [(0.003, 0.9, 1), (0.1, 0, 0.2)])
+def test_thin_walls_are_told_though_no_grid_point_lies_inside(
+    thickness: float, least: float, most: float
+) -> None:
+    network = plate(thickness)
+    points, size = near_surface(network, LEAST)
+    assert least <= thin_share(network, points, size, 0.01) <= most
+
+
+def test_default_resolution_follows_the_walls() -> None:
+    assert default_resolution(tiny.document(plate(0.003))) == MOST
+    assert default_resolution(tiny.document(tiny.octahedron())) == LEAST
 
 
 @pytest.mark.parametrize(("shell", "expected"), [(0.05, LEAST), (0.004, 510), (1e-4, 2048)])
 def test_sheets_get_a_cell_for_half_their_thickness(shell: float, expected: int) -> None:
-    document = replace(tiny.document(tiny.octahedron(1)), shell=shell)
+    document = replace(tiny.document(tiny.octahedron()), shell=shell)
     assert default_resolution(document) == expected
 
 
-def test_no_surface_at_all_has_a_default_too(nothing: Network) -> None:
-    assert default_resolution(tiny.document(nothing)) == MOST
-
-
-@pytest.fixture
-def nothing() -> Network:
-    return tiny.octahedron(-1)
+def test_no_surface_at_all_has_a_default_too() -> None:
+    assert default_resolution(tiny.document(tiny.octahedron(-1))) == LEAST
