@@ -25,6 +25,7 @@ demo: setup
 	$(BIN)/nisp sample -o demo
 	$(BIN)/nisp encode demo/sample.obj -o demo/sample.nisp
 	$(BIN)/nisp decode demo/sample.nisp --mesh -o demo/decoded.glb
+	$(BIN)/nisp render demo/sample.nisp -o demo/sample.png
 	$(BIN)/nisp compare demo/sample.obj demo/decoded.glb
 	ls -l demo
 
