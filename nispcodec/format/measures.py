@@ -1,7 +1,8 @@
 """The `info` field of META: how a file was made and what was measured.
 
-Keys that the format knows are numbers on disk; other keys are text. Floats are float32 there: three
-digits are all that a measurement is good for.
+Keys that the format knows are numbers on disk; other keys are text. Shares and errors are counted
+in millionths where that is exact, other floats are float32: three digits are all that a measurement
+is good for.
 """
 
 from __future__ import annotations
@@ -16,6 +17,9 @@ from nispcodec.format.constants import MEASURES, META
 
 Scalar = str | int | float | bool
 _PLAIN = "text, a number or a bool"
+_COUNTED = MEASURES[2:]
+_MILLION = 1_000_000
+_MOST = 1000.0
 
 
 def encode(info: Mapping[str, Scalar]) -> dict[int | str, Scalar]:
@@ -24,18 +28,20 @@ def encode(info: Mapping[str, Scalar]) -> dict[int | str, Scalar]:
         if not isinstance(key, str) or not isinstance(value, (str, int, float, bool)):
             raise _error(key, _PLAIN, type(value).__name__)
     return {
-        1 + MEASURES.index(key) if key in MEASURES else key: _single(value)
+        1 + MEASURES.index(key) if key in MEASURES else key: _stored(key, value)
         for key, value in info.items()
     }
 
 
 def decode(stored: dict[Any, Any]) -> dict[str, Scalar]:
-    """The inverse of `encode`; a float comes back as the shortest decimal that means it."""
+    """The inverse of `encode`; a float32 comes back as the shortest decimal that means it."""
     info: dict[str, Scalar] = {}
     for key, value in stored.items():
         if type(value) not in (str, int, float, bool):
             raise _error(key, _PLAIN, type(value).__name__)
-        info[_name(key)] = _shortest(value)
+        name = _name(key)
+        counted = name in _COUNTED and type(value) is int
+        info[name] = value / _MILLION if counted else _shortest(value)
     return info
 
 
@@ -47,9 +53,14 @@ def _name(key: object) -> str:
     return key
 
 
-def _single(value: Scalar) -> Scalar:
-    if not isinstance(value, float):
-        return value
+def _stored(key: str, value: Scalar) -> Scalar:
+    if key in _COUNTED and not isinstance(value, str):
+        count = round(value * _MILLION) if abs(value) < _MOST else 0
+        return count if count / _MILLION == value else _single(float(value))
+    return _single(value) if isinstance(value, float) else value
+
+
+def _single(value: float) -> float:
     with np.errstate(over="ignore"):
         single = float(np.float32(value))
     return single if np.isfinite(single) else value
@@ -58,7 +69,9 @@ def _single(value: Scalar) -> Scalar:
 def _shortest(value: Scalar) -> Scalar:
     if not isinstance(value, float) or _single(value) != value:
         return value
-    return float(str(np.float32(value)))
+    with np.errstate(over="ignore"):
+        shortest = float(str(np.float32(value)))
+    return shortest if np.isfinite(shortest) else value
 
 
 def _error(key: object, expected: str, found: str) -> FormatError:

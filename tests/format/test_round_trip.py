@@ -8,13 +8,14 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 
-from nispcodec.asset import Material
-from nispcodec.document import ChartTable, Document
+from nispcodec.asset import Material, Texture, TextureMap
+from nispcodec.document import ChartTable, Document, Frame
 from nispcodec.errors import FormatError
 from nispcodec.format import inspect, pack, unpack
 from nispcodec.format.constants import CODINGS
 from nispcodec.network import NetworkSpec
 from tests.format.documents import assert_same, documents, full, network, quantised, tiny
+from tests.format.test_measures import ENCODERS
 
 
 @given(documents())
@@ -59,16 +60,19 @@ def test_inspect_accounts_for_every_byte() -> None:
 
 
 def test_overhead_of_a_one_material_asset() -> None:
-    charts = ChartTable(np.zeros(13, np.int32), np.ones(13, np.bool_), (-0.1, 0.0123), (1.1, 0.98))
-    spec = NetworkSpec((32,) * 4, 2, conditioning="embedding", charts=13, embedding=8)
+    """As an encoder writes it, with what it measured."""
+    charts = ChartTable(np.zeros(13, np.int32), np.ones(13, np.bool_), (-0.25, 0.125), (1.25, 0.75))
+    spec = NetworkSpec((32,) * 4, 2, conditioning="embedding", charts=13, embedding=4)
     document = dataclasses.replace(
         full(),
+        frame=Frame((0.0, 0.25, 0.5), 1.5),
         charts=charts,
-        materials=(Material("spot", maps={"base_color": full().materials[0].maps["normal"]}),),
-        textures=full().textures,
-        chart=network(NetworkSpec((32,) * 4, 13)),
+        materials=(Material("initialShadingGroup", maps={"base_color": TextureMap(0)}),),
+        textures=(Texture("spot_texture.png", bytes(80_000), "image/png"),),
+        chart=network(NetworkSpec((32,) * 3, 13)),
         uv=network(spec),
-        info={},
+        shell=0.0,
+        info=ENCODERS,
         extra={},
     )
     sections = inspect(pack(document))

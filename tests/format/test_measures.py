@@ -1,0 +1,44 @@
+"""The `info` field: short on disk, the same again to the digits that a measurement has."""
+
+from __future__ import annotations
+
+import pytest
+
+from nispcodec.errors import FormatError
+from nispcodec.format import canonical, measures
+
+ENCODERS = {
+    "preset": "balanced",
+    "seed": 7,
+    "hidden_share": 0.0129,
+    "sheet_share": 0.0,
+    "distance_error": 4.25e-4,
+    "chart_accuracy": 1.0,
+    "uv_error_median": 2.47e-4,
+    "uv_error_mean": 3.34e-6,
+}
+
+
+def test_what_an_encoder_writes() -> None:
+    stored = measures.encode(ENCODERS)
+    assert stored[3] == 12_900
+    assert measures.decode(stored) == ENCODERS
+    assert len(canonical.encode("META", stored)) <= 40
+
+
+@pytest.mark.parametrize("value", [True, False, 0, -1, 2**64 - 1, "", 0.1, -4e-9, 1e300, 1e30])
+def test_what_others_write(value: str | float) -> None:
+    back = measures.decode(measures.encode({"other": value}))["other"]
+    assert (back, type(back)) == (value, type(value))
+
+
+@pytest.mark.parametrize("value", [1e30, -0.5, 123.456789, 1e-12])
+def test_known_names_with_odd_values(value: float) -> None:
+    back = measures.decode(measures.encode({"uv_error_mean": value}))["uv_error_mean"]
+    assert back == pytest.approx(value, rel=1e-6)
+
+
+@pytest.mark.parametrize("key", [0, 9, -1, True, "seed", 1.5, b"seed"])
+def test_keys_that_mean_nothing(key: object) -> None:
+    with pytest.raises(FormatError, match=r"document\.info"):
+        measures.decode({key: 1})
