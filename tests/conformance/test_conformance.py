@@ -1,4 +1,4 @@
-"""The committed files decode to the committed answers, by the library and by the specification."""
+"""The committed files decode to the committed answers: by the library, and by the specification."""
 
 from __future__ import annotations
 
@@ -13,16 +13,13 @@ from nispcodec.decode.model import NispModel
 from nispcodec.errors import FormatError
 from nispcodec.format import pack, unpack
 from nispcodec.format.constants import CODINGS
-from nispcodec.format.container import content, read_container
-from nispcodec.texture import decode_image
-from tests.format import spec
+from tests.conformance.independent import Reader
 from tests.format.documents import assert_same
 
 HERE = Path(__file__).parent
 FILES = sorted(HERE.glob("*.nisp"))
 MALFORMED = json.loads((HERE / "malformed" / "expected.json").read_text())
 TOLERANCE = json.loads((HERE / "tolerance.json").read_text())
-DECODER = spec.decoder()
 
 each_file = pytest.mark.parametrize("path", FILES, ids=[path.stem for path in FILES])
 
@@ -55,51 +52,23 @@ def test_the_library_answers(path: Path) -> None:
 
 @each_file
 def test_the_specification_answers(path: Path) -> None:
-    document, wanted = unpack(path.read_bytes()), expected(path)
-    weights = spec_weights(path)
-    table, k = document.charts, len(document.charts)
-
-    def ask(name: str, point: Any, chart: int = 0) -> list[float]:
-        made = vars(document.networks[name].spec)
-        answer: list[float] = DECODER["evaluate"](made, k, weights[name], point, chart)
-        return answer
-
+    reader, wanted = Reader(path.read_bytes()), expected(path)
+    scale = np.maximum(np.abs(reader.uv_map[2:]), 1)
     for row, point in enumerate(wanted["points"].tolist()):
-        assert close(ask("sdf", point)[0], wanted["sdf"][row], "sdf")
-        logits = ask("chart", point) if k > 1 else [0.0]
-        chart = logits.index(max(logits))
+        chart = reader.chart(point)
         assert chart == wanted["chart"][row]
-        if table.has_uv[chart]:
-            placed = np.array(ask("uv", point, chart)) * table.uv_scale + table.uv_offset
-            assert close(placed, wanted["uv"][row], "uv", np.maximum(np.abs(table.uv_scale), 1))
-        else:
-            assert (wanted["uv"][row] == 0).all()
-
-
-def spec_weights(path: Path) -> dict[str, list[list[float]]]:
-    """The tensors of every network, by the specification's decoder."""
-    data = path.read_bytes()
-    nets = next(entry for entry in read_container(data) if entry.code == "NETS")
-    networks = unpack(data).networks
-    shapes = [
-        [(1, *shape)[-2:] for shape in each.spec.shapes.values()] for each in networks.values()
-    ]
-    return dict(zip(networks, DECODER["read_nets"](bytes(content(nets)), shapes), strict=True))
+        assert close(reader.ask(1, point)[0], wanted["sdf"][row], "sdf")
+        assert close(reader.uv(point, chart), wanted["uv"][row], "uv", scale)
+        found = reader.color(wanted["uv"][row].tolist(), chart)
+        assert close(found, wanted["color"][row], "color")
 
 
 @each_file
-def test_the_specification_looks_colours_up(path: Path) -> None:
-    document, wanted = unpack(path.read_bytes()), expected(path)
-    images = [decode_image(texture).tolist() for texture in document.textures]
-    for row, chart in enumerate(wanted["chart"].tolist()):
-        material = document.materials[document.charts.materials[chart]]
-        used = material.maps.get("base_color")
-        texels = None
-        if used is not None and document.charts.has_uv[chart]:
-            image, place = images[used.texture], wanted["uv"][row]
-            texels = DECODER["look_up"](image, *place, *used.wrap, used.filter)
-        found = DECODER["color"](list(material.base_color), texels)
-        assert close(found, wanted["color"][row], "color")
+def test_world_points(path: Path) -> None:
+    *center, radius = Reader(path.read_bytes()).frame
+    wanted = expected(path)
+    world = wanted["points"] * radius + center
+    assert close(world, wanted.get("world_points", world), "sdf", radius)
 
 
 @each_file
