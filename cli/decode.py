@@ -42,7 +42,7 @@ REBAKE_FACES = 20_000
     is_flag=False,
     flag_value=1024,
     metavar="[SIZE]",
-    help=f"One new atlas and texture, 1024 texels wide; {REBAKE_FACES:,} faces unless told.",
+    help=f"One new atlas, textures 1024 texels wide; {REBAKE_FACES:,} faces unless told.",
 )
 @click.option("--keep-spurious", is_flag=True, help="Keep what is recognised as noise.")
 def command(
@@ -82,7 +82,7 @@ def command(
 
 
 def baked(model: NispModel, mesh: TexturedMesh, size: int) -> TexturedMesh:
-    """The mesh with an atlas and a texture of its own."""
+    """The mesh with an atlas and textures of its own."""
     from nispcodec.decode.rebake import rebaked
     from nispcodec.mesh.unwrap import unwrap
 

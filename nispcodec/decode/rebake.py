@@ -1,16 +1,18 @@
-"""One new texture for a mesh with a new atlas, painted by asking the model at every texel."""
+"""New textures for a mesh with a new atlas, painted by asking the model at every texel."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from io import BytesIO
 
 import numpy as np
 from numpy.typing import NDArray
 
 from nispcodec.asset import Material, Texture, TexturedMesh, TextureMap
+from nispcodec.decode.maps import baked_maps, further_slots
 from nispcodec.decode.model import NispModel
+from nispcodec.decode.tangents import frames_at
 from nispcodec.errors import MeshError
 
 SIZES = (16, 8192)
@@ -20,8 +22,18 @@ Floats = NDArray[np.float64]
 Integers = NDArray[np.int32]
 
 
+@dataclass(frozen=True)
+class Texels:
+    """Texels that a face covers: row, column and face (n,), barycentric weights (n, 3)."""
+
+    rows: Integers
+    columns: Integers
+    faces: Integers
+    weights: Floats
+
+
 def rebaked(model: NispModel, mesh: TexturedMesh, size: int = 1024) -> TexturedMesh:
-    """The mesh with one material and one texture of `size` x `size` texels: the model's colours.
+    """The mesh with one material: textures of `size` x `size` texels for the model's maps.
 
     `mesh`, in the world frame, has an atlas of its own: every face with UVs in [0, 1], none over
     another. Texels outside the atlas take the colour of the nearest texel inside, so that no
@@ -32,22 +44,27 @@ def rebaked(model: NispModel, mesh: TexturedMesh, size: int = 1024) -> TexturedM
         raise MeshError(f"size: expected {SIZES[0]} to {SIZES[1]} texels, found {size}")
     if not mesh.has_uv.all():
         raise MeshError(f"rebake: expected UVs on all faces, found {(~mesh.has_uv).sum()} without")
-    rows, columns, points = _texels(mesh, size)
-    colors = np.rint(model.color(points) * 255).astype(np.uint8)
-    image = np.zeros((size, size, 4), np.uint8)
-    image[rows, columns] = colors
-    translucent = bool((colors[:, 3] < 255).any())
-    picture = _padded(image, rows, columns)[..., : 4 if translucent else 3]
+    texels = _texels(mesh, size)
+    points = np.einsum("nc,ncd->nd", texels.weights, mesh.corners[texels.faces])
+    colors = model.color(points)
+    translucent = bool((colors[:, 3] < 1).any())
+    pictures = {"base_color": colors if translucent else colors[:, :3]}
+    if further_slots(model):
+        frames = frames_at(mesh, texels.faces, texels.weights)
+        pictures |= baked_maps(model, points, frames)
     return replace(
         mesh,
         face_materials=np.zeros_like(mesh.face_materials),
-        materials=(_material(mesh, translucent),),
-        textures=(Texture("baked.png", _png(picture), "image/png"),),
+        materials=(_material(mesh, list(pictures), translucent),),
+        textures=tuple(
+            Texture(f"baked_{slot}.png", _png(values, texels, size), "image/png")
+            for slot, values in pictures.items()
+        ),
     )
 
 
-def _texels(mesh: TexturedMesh, size: int) -> tuple[Integers, Integers, Floats]:
-    """Row, column and world position of every texel whose centre a face covers."""
+def _texels(mesh: TexturedMesh, size: int) -> Texels:
+    """Every texel whose centre a face covers."""
     owners = np.full((size, size), -1, np.int32)
     weights = np.zeros((size, size, 3))
     pixels: Floats = mesh.corner_uvs * [size, -size] + [0.0, size]
@@ -56,10 +73,8 @@ def _texels(mesh: TexturedMesh, size: int) -> tuple[Integers, Integers, Floats]:
         inside = (shares >= -1e-9).all(axis=1)
         owners[y[inside], x[inside]] = faces[inside]
         weights[y[inside], x[inside]] = shares[inside]
-    rows, columns = np.nonzero(owners >= 0)
-    corners = mesh.corners[owners[rows, columns]]
-    points = np.einsum("nc,ncd->nd", weights[rows, columns], corners)
-    return rows.astype(np.int32), columns.astype(np.int32), points
+    rows, columns = (where.astype(np.int32) for where in np.nonzero(owners >= 0))
+    return Texels(rows, columns, owners[rows, columns], weights[rows, columns])
 
 
 def _candidates(pixels: Floats, size: int) -> Iterator[tuple[Integers, Integers, Integers]]:
@@ -90,34 +105,41 @@ def _barycentric(triangles: Floats, points: Floats) -> Floats:
     return np.column_stack([1 - second - third, second, third])
 
 
-def _padded(image: NDArray[np.uint8], rows: Integers, columns: Integers) -> NDArray[np.uint8]:
+def _png(values: NDArray[np.float32], texels: Texels, size: int) -> bytes:
+    """An image of the texels' values (n, c), which lie in [0, 1]."""
+    from PIL import Image
+
+    image = np.zeros((size, size, values.shape[1]), np.uint8)
+    image[texels.rows, texels.columns] = np.rint(np.clip(values, 0, 1) * 255)
+    data = BytesIO()
+    Image.fromarray(_padded(image, texels)).save(data, "PNG")
+    return data.getvalue()
+
+
+def _padded(image: NDArray[np.uint8], texels: Texels) -> NDArray[np.uint8]:
     from scipy.ndimage import distance_transform_edt
 
     empty = np.ones(image.shape[:2], np.bool_)
-    empty[rows, columns] = False
+    empty[texels.rows, texels.columns] = False
     if empty.all():
         return image
     nearest = distance_transform_edt(empty, return_distances=False, return_indices=True)
-    padded: NDArray[np.uint8] = image[tuple(nearest)]
-    return padded
+    return np.ascontiguousarray(image[tuple(nearest)])
 
 
-def _material(mesh: TexturedMesh, translucent: bool) -> Material:
-    """Metallic, roughness and the rest from the material of most faces."""
+def _material(mesh: TexturedMesh, slots: list[str], translucent: bool) -> Material:
+    """What is not in textures now is that of the material of most faces."""
     most = mesh.materials[int(np.bincount(mesh.face_materials).argmax())]
     through = "mask" if most.alpha_mode == "mask" else "blend"
+    rough, glowing = "metallic_roughness" in slots, "emissive" in slots
+    clamped = ("clamp", "clamp")
     return replace(
         most,
         name="baked",
         base_color=(1.0, 1.0, 1.0, 1.0),
+        metallic=1.0 if rough else most.metallic,
+        roughness=1.0 if rough else most.roughness,
+        emissive=(1.0, 1.0, 1.0) if glowing else most.emissive,
         alpha_mode=through if translucent else "opaque",
-        maps={"base_color": TextureMap(0, wrap=("clamp", "clamp"))},
+        maps={slot: TextureMap(number, wrap=clamped) for number, slot in enumerate(slots)},
     )
-
-
-def _png(pixels: NDArray[np.uint8]) -> bytes:
-    from PIL import Image
-
-    data = BytesIO()
-    Image.fromarray(np.ascontiguousarray(pixels)).save(data, "PNG")
-    return data.getvalue()
