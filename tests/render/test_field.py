@@ -7,6 +7,7 @@ import pytest
 
 from nispcodec.asset import Material
 from nispcodec.decode.model import NispModel
+from nispcodec.document import ChartTable
 from nispcodec.errors import QueryError
 from nispcodec.metrics.pictures import compare_pictures
 from nispcodec.render.camera import Camera, turntable
@@ -94,3 +95,20 @@ def test_normal_channel_shows_world_axes(scene: FieldScene) -> None:
     picture = channel_picture(seen, "normal")[13, 18, :3]
     np.testing.assert_allclose(np.abs(picture * 2 - 1), 1 / np.sqrt(3), atol=0.02)
     assert picture[2] > 0.5
+
+
+def test_geometry_alone_can_be_seen() -> None:
+    bare = dataclasses.replace(
+        tiny.document(),
+        charts=ChartTable(np.zeros(1, np.int32), np.zeros(1, np.bool_)),
+        chart=None,
+        uv=None,
+    )
+    (picture,) = render_views(NispModel(bare), [Camera()], 24)
+    assert picture[11, 12, 3] == 1
+
+
+def test_a_field_without_a_surface_is_an_empty_picture() -> None:
+    nothing = dataclasses.replace(tiny.document(), sdf=tiny.octahedron(-1.0))
+    (picture,) = render_views(NispModel(nothing), [Camera()], 24)
+    assert (picture == 0).all()
