@@ -7,7 +7,7 @@ from pathlib import Path
 
 import click
 
-from benchmarks.codecs import CODECS
+from benchmarks.codecs import CODECS, OPTIONAL
 from benchmarks.results import write_results
 from benchmarks.runner import Finished, Job, drawings, plan, run
 from benchmarks.source import Source, sources
@@ -16,6 +16,7 @@ from benchmarks.textures import TEXTURES
 
 QUICK_ASSETS = 2
 NAMES = (*CODECS, TEXTURES)
+USUAL = [name for name in NAMES if name not in OPTIONAL]
 
 
 @click.command()
@@ -56,7 +57,7 @@ def main(
     Example: python -m benchmarks --assets ../shared/assets --quick
     """
     store = Store(output / "points")
-    planned = list(plan(chosen(assets, only, quick), codecs or NAMES, quick))
+    planned = list(plan(chosen(assets, only, quick), codecs or USUAL, quick))
     for each in planned:
         if not isinstance(each, Job):
             store.put(each)

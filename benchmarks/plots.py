@@ -6,9 +6,11 @@ import math
 from collections.abc import Sequence
 from pathlib import Path
 
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
+from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
 from benchmarks.bjontegaard import front
 from benchmarks.codecs import CODECS
@@ -23,6 +25,7 @@ COLORS = {
     "draco": "#2a7f3f",
     "simplified_draco": "#1f5fbf",
     "nisp": "#d62f2f",
+    "nisp_paper": "#e8953a",
 }
 # Errors of what keeps every bit, which a logarithm could not show.
 LEAST_ERROR = 1e-5
@@ -31,7 +34,7 @@ PANEL = (3.1, 2.6)
 
 
 def draw(rows: Sequence[Row], path: Path, error: str) -> None:
-    """All assets side by side, as PNG or SVG by the path's suffix."""
+    """All assets side by side, as PNG."""
     assets = sorted({row["asset"] for row in rows})
     lines = math.ceil(len(assets) / COLUMNS)
     columns = min(COLUMNS, len(assets))
@@ -42,9 +45,14 @@ def draw(rows: Sequence[Row], path: Path, error: str) -> None:
         axes.set_visible(False)
     for axes, asset in zip(grid, assets, strict=False):
         panel(axes, rows, asset, error)
-    handles, labels = grid[0].get_legend_handles_labels()
-    figure.legend(handles, labels, loc="outside upper center", ncols=len(labels), frameon=False)
-    figure.savefig(path, dpi=DPI, metadata={"Date": None} if path.suffix == ".svg" else None)
+    known: dict[str, Artist] = {}
+    for axes in grid:
+        handles, labels = axes.get_legend_handles_labels()
+        known |= dict(zip(labels, handles, strict=True))
+    figure.legend(
+        known.values(), known, loc="outside upper center", ncols=len(CODECS), frameon=False
+    )
+    figure.savefig(path, dpi=DPI)
 
 
 def panel(axes: Axes, rows: Sequence[Row], asset: str, error: str) -> None:
@@ -60,7 +68,10 @@ def panel(axes: Axes, rows: Sequence[Row], asset: str, error: str) -> None:
     axes.set_title(asset, fontsize=9)
     axes.set_xscale("log")
     axes.set_yscale("log")
-    axes.grid(alpha=0.25, which="both", lw=0.4)
+    axes.xaxis.set_major_locator(LogLocator(subs=(1, 2, 5)))
+    axes.xaxis.set_major_formatter(FuncFormatter(lambda size, _: f"{size / 1e3:g}"))
+    axes.xaxis.set_minor_formatter(NullFormatter())
+    axes.grid(alpha=0.25, lw=0.5)
     axes.tick_params(labelsize=7)
-    axes.set_xlabel("bytes without textures", fontsize=7)
+    axes.set_xlabel("kB without textures", fontsize=7)
     axes.set_ylabel(ERRORS[error], fontsize=7)

@@ -19,7 +19,7 @@ from benchmarks.store import Record, Store
 from benchmarks.textures import TEXTURES
 
 # Codecs whose decodes are worth looking at; text and floats look like the original.
-DRAWN = ("nisp", "simplified_draco", "draco", "gltfpack")
+DRAWN = ("nisp", "nisp_paper", "simplified_draco", "draco", "gltfpack")
 
 
 @dataclass(frozen=True)

@@ -24,7 +24,10 @@ CODECS = {
     "draco": "Draco",
     "simplified_draco": "simplify + Draco",
     "nisp": ".nisp",
+    "nisp_paper": ".nisp, the paper's networks",
 }
+# Twenty minutes an asset: only when asked for.
+OPTIONAL = {"nisp_paper"}
 
 
 class Unavailable(Exception):

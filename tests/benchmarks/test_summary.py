@@ -46,6 +46,7 @@ def record(codec: str, size: int, distance: float, uv: float) -> dict:
         "codec": codec,
         "setting": {"q": size},
         "bytes": size,
+        "faces": 2 * size,
         "encode": cost,
         "metrics": metrics,
     }

@@ -1,0 +1,1 @@
+"""The paper's tables, each published number beside ours, and what differs between the two."""
