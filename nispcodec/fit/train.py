@@ -18,7 +18,9 @@ from nispcodec.fit.task import Batch, Schedule, Task
 from nispcodec.network import Network
 from nispcodec.progress import Listener, Progress
 
-WARM_UP = 100
+WARM_UP = 0.15
+"""Share of the steps until the full rate: a fit that starts faster may learn |SDF| and never find the sign."""
+
 CLIP = 1.0
 CHECKS = 40
 CHUNK = 25
@@ -171,7 +173,7 @@ def _shape(schedule: Schedule, step: int) -> float:
     if schedule.optimiser == "adam":
         return 1.0
     cosine = 0.5 * (1 + math.cos(math.pi * step / schedule.steps))
-    return min(1.0, (step + 1) / WARM_UP) * (0.01 + 0.99 * cosine)
+    return min(1.0, (step + 1) / (WARM_UP * schedule.steps)) * (0.01 + 0.99 * cosine)
 
 
 def _batches(samples: Batch, schedule: Schedule, generator: torch.Generator) -> Iterator[Batch]:

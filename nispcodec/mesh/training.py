@@ -6,15 +6,15 @@ from dataclasses import dataclass
 
 from nispcodec.mesh.samples import BETA, Sampler, SampleSet
 
-TIGHT = 1 / 250
+TIGHT = 1 / 300
 """Mean distance (normalised frame) of the samples that sharpen the zero set."""
 
 SKIN = 3e-3
 """Mean distance of the samples for charts and UVs: decisions far from the surface are wasted."""
 
-NEAR_COUNT = 100_000
-TIGHT_COUNT = 240_000
-CUBE_COUNT = 60_000
+NEAR_COUNT = 60_000
+TIGHT_COUNT = 300_000
+CUBE_COUNT = 40_000
 SKIN_COUNT = 250_000
 MEMBRANE_COUNT = 12_000
 HELD_OUT_COUNT = 20_000
