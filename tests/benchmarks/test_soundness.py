@@ -1,0 +1,60 @@
+"""The counts of what is wrong with a mesh are 0 on a good one, and only there."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from benchmarks.decoder import naive
+from benchmarks.soundness import soundness
+from nispcodec.asset import TexturedMesh
+from nispcodec.decode.meshing import textured_mesh
+from nispcodec.document import Document
+from tests import tiny
+
+WRONG = ("cracks", "crowded_edges", "duplicate_vertices", "two_chart_triangles")
+
+
+@pytest.fixture(scope="module")
+def document() -> Document:
+    return tiny.document()
+
+
+@pytest.fixture(scope="module")
+def mesh(document: Document) -> TexturedMesh:
+    return textured_mesh(document, 24)[0]
+
+
+def test_a_decode_has_nothing_wrong(document: Document, mesh: TexturedMesh) -> None:
+    counts = soundness(document, mesh)
+    assert counts["faces"] == len(mesh.faces)
+    assert [counts[name] for name in WRONG] == [0, 0, 0, 0]
+
+
+def test_a_uv_for_each_vertex_smears_across_the_seam(document: Document) -> None:
+    assert soundness(document, naive(document, 24))["two_chart_triangles"] > 0
+
+
+def test_holes_doubled_faces_and_doubled_vertices_count(
+    document: Document, mesh: TexturedMesh
+) -> None:
+    pick = np.r_[1 : len(mesh.faces)]
+    torn = replace(
+        mesh,
+        faces=mesh.faces[pick],
+        uv_faces=mesh.uv_faces[pick],
+        face_materials=mesh.face_materials[pick],
+    )
+    assert soundness(document, torn)["cracks"] == 3
+    again = np.r_[0, 0 : len(mesh.faces)]
+    doubled = replace(
+        mesh,
+        faces=mesh.faces[again],
+        uv_faces=mesh.uv_faces[again],
+        face_materials=mesh.face_materials[again],
+    )
+    assert soundness(document, doubled)["crowded_edges"] == 3
+    loose = replace(mesh, positions=np.vstack([mesh.positions, mesh.positions[:1]]))
+    assert soundness(document, loose)["duplicate_vertices"] == 1
