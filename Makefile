@@ -1,7 +1,7 @@
 # make demo: set up, encode a sample asset, decode it, show sizes and errors
 # make test: set up, then everything that CI runs
 # make fuzz: RUNS files of a coverage-guided fuzzer against the parser
-# make bench: the numbers of benchmarks/, on the assets in ASSETS
+# make bench: every codec on the assets in ASSETS, into build/bench/report.html; some three hours, goes on where it stopped
 
 PYTHON ?= python3
 ASSETS ?= ../shared/assets
@@ -42,4 +42,4 @@ fuzz: setup
 	$(BIN)/python -m tests.fuzz.fuzz_unpack -runs=$(RUNS) -max_len=4096 -print_final_stats=1 build/corpus
 
 bench: setup
-	$(BIN)/python -m benchmarks.main_job --assets $(ASSETS)
+	$(BIN)/python -m benchmarks --assets $(ASSETS)

@@ -1,13 +1,19 @@
-"""Write the measured table into the README, from the committed results.
+"""Write the measured tables and the plot into the README, from results that are committed.
 
-python -m benchmarks.readme
+    python -m benchmarks.readme --bench build/bench
+
+Keeps what `python -m benchmarks` left in that folder as benchmarks/results/bench.{json,csv} and
+docs/rate_distortion.png; without --bench, tables are of what was kept before.
 """
 
 from __future__ import annotations
 
+import csv
 import json
 from pathlib import Path
 from typing import Any
+
+import click
 
 from benchmarks.main_job import RESULTS
 from nispcodec.output import write_atomic
@@ -19,6 +25,17 @@ HEAD = (
     "| distance | UV median | charts | colour |\n"
     "|---|---|---|---|---|---|---|---|---|\n"
 )
+PEERS_BEGIN = "<!-- peers: python -m benchmarks.readme -->\n"
+PEERS_END = "<!-- end of peers -->\n"
+PEERS_HEAD = (
+    "| kB, no textures | `.nisp` | simplify + Draco, as near | and UVs as near "
+    "| Draco 11/10 bits | gltfpack -cc 12/12 bits | OBJ.xz, 4 digits |\n"
+    "|---|---|---|---|---|---|---|\n"
+)
+PRESET = "balanced"
+OTHERS = (("draco", "11 10"), ("gltfpack", "cc 12 12"), ("obj_xz", "4 digits"))
+BENCH, TABLE = Path("benchmarks/results/bench.json"), Path("benchmarks/results/bench.csv")
+PLOT = Path("docs/rate_distortion.png")
 
 
 def row(name: str, record: dict[str, Any]) -> str:
@@ -38,17 +55,71 @@ def row(name: str, record: dict[str, Any]) -> str:
     return "| " + " | ".join(cells) + " |\n"
 
 
-def main() -> None:
-    """Replace what stands between the markers."""
+def measured() -> str:
+    """The table of `benchmarks.main_job`."""
     results = json.loads(Path(RESULTS).read_text(encoding="utf-8"))
     rows = [row(name, record) for name, record in sorted(results["assets"].items())]
-    where = (
-        f"\nMeasured on {results['machine']['cores']} cores, {results['machine']['processor']}.\n"
-    )
+    machine = results["machine"]
+    where = f"\nMeasured on {machine['cores']} cores, {machine['processor']}.\n"
+    return HEAD + "".join(rows) + where
+
+
+def compared() -> str:
+    """The table of `python -m benchmarks`: ours with the default preset beside the others."""
+    if not BENCH.exists():
+        return ""
+    results = json.loads(BENCH.read_text(encoding="utf-8"))
+    with TABLE.open(encoding="utf-8", newline="") as file:
+        rows = list(csv.DictReader(file))
+    duels = results["summary"]["against_rival"]
+    lines = [duel_row(name, found, rows) for name, found in sorted(duels.items())]
+    return PEERS_HEAD + "".join(lines) + f"\nAt commit {results['commit']}.\n"
+
+
+def duel_row(name: str, duels: list[dict[str, Any]], rows: list[dict[str, str]]) -> str:
+    """One asset's line: sizes in kB, `none` where no setting of the rival is as good."""
+    ours = next((duel for duel in duels if duel["setting"] == PRESET), None)
+    if ours is None:
+        return f"| {name} | not measured | | | | | |\n"
+    rival = ours["rival_bytes"]
+    others = [size_of(rows, name, *which) for which in OTHERS]
+    sizes = [ours["bytes"], rival["distance"], rival["distance and uv"], *others]
+    cells = ["none" if size is None else f"{size / 1e3:,.1f}" for size in sizes]
+    return f"| {name} | " + " | ".join(cells) + " |\n"
+
+
+def size_of(rows: list[dict[str, str]], asset: str, codec: str, setting: str) -> int | None:
+    """Bytes of one measured point."""
+    wanted = {"asset": asset, "codec": codec, "setting": setting}
+    found = [row for row in rows if wanted.items() <= row.items() and row["bytes"]]
+    return int(found[0]["bytes"]) if found else None
+
+
+def keep(folder: Path) -> None:
+    """Copy what a run left to where it is committed; the points' details stay behind."""
+    results = json.loads((folder / "results.json").read_text(encoding="utf-8"))
+    del results["points"]
+    write_atomic(BENCH, json.dumps(results, indent=1).encode() + b"\n")
+    write_atomic(TABLE, (folder / "results.csv").read_bytes())
+    write_atomic(PLOT, (folder / "distance.png").read_bytes())
+
+
+def replaced(text: str, begin: str, end: str, content: str) -> str:
+    """The text with something else between two markers."""
+    before, rest = text.split(begin)
+    return before + begin + content + end + rest.split(end, 1)[1]
+
+
+@click.command()
+@click.option("--bench", type=click.Path(path_type=Path, exists=True), help="Keep these results.")
+def main(bench: Path | None) -> None:
+    """Replace what stands between the markers."""
+    if bench is not None:
+        keep(bench)
     text = README.read_text(encoding="utf-8")
-    before, rest = text.split(BEGIN)
-    after = rest.split(END)[1]
-    write_atomic(README, (before + BEGIN + HEAD + "".join(rows) + where + END + after).encode())
+    text = replaced(text, BEGIN, END, measured())
+    text = replaced(text, PEERS_BEGIN, PEERS_END, compared())
+    write_atomic(README, text.encode())
 
 
 if __name__ == "__main__":

@@ -8,7 +8,7 @@ import numpy as np
 
 from benchmarks.corners import Corners
 
-# Weights from 0.3 to 3 gave the same curves within 5 % on chess_king, so one is enough.
+# On chess_king, 0.3 to 3 changed bytes by 2 % and distances by 8 %, up and down: one is enough.
 UV_WEIGHT = 1.0
 # Drop bodies smaller than the error: without it no curve goes below the smallest of each body.
 PRUNE = 8
