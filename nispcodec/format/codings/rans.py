@@ -28,8 +28,8 @@ Decoded = tuple[Integers, NDArray[np.integer], int]
 SCALE_BITS = 14
 SCALE = 1 << SCALE_BITS
 LOW = 1 << 16
-LONG = 1 << 15
-TURNS_BITS = 10
+LONG = 1 << 14
+TURNS_BITS = 9
 
 
 def lanes(count: int) -> int:
