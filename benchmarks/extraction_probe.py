@@ -15,7 +15,7 @@ import numpy as np
 from nispcodec.decode.components import without_noise
 from nispcodec.decode.evaluate import evaluate
 from nispcodec.decode.extract import LIMIT, extract
-from nispcodec.decode.meshing import textured_mesh
+from nispcodec.decode.meshing import default_resolution, textured_mesh
 from nispcodec.document import Document
 from nispcodec.format import unpack
 
@@ -23,11 +23,12 @@ from nispcodec.format import unpack
 def sparse(document: Document, resolution: int) -> dict[str, float]:
     """Seconds to the bare surface, without noise, and to the finished textured mesh."""
     started, busy = time.perf_counter(), time.process_time()
-    surface, report = without_noise(document.sdf, extract(document.sdf, resolution))
+    cells = resolution or default_resolution(document)
+    surface, report = without_noise(document.sdf, extract(document.sdf, cells))
     extracted = time.perf_counter() - started
     peak, worked = peak_bytes(), time.process_time() - busy
     started = time.perf_counter()
-    mesh, _ = textured_mesh(document, resolution)
+    mesh, _ = textured_mesh(document, resolution or None)
     return {
         "resolution": report.resolution,
         "seconds": round(extracted, 3),
@@ -66,7 +67,7 @@ def peak_bytes() -> int:
 @click.argument("resolution", type=int)
 @click.option("--dense", "full", is_flag=True, help="Full grid and skimage instead.")
 def main(model: Path, resolution: int, full: bool) -> None:
-    """Extract MODEL at RESOLUTION."""
+    """Extract MODEL at RESOLUTION; 0 for what a plain decode takes."""
     document = unpack(model.read_bytes())
     extract(document.sdf, 16)
     click.echo(json.dumps((dense if full else sparse)(document, resolution)))

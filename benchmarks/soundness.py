@@ -6,8 +6,8 @@ python -m benchmarks.soundness MODEL.nisp ... [-o OUT.json]
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 import click
 import numpy as np
@@ -70,11 +70,14 @@ def _agrees(
     return np.asarray((difference < SAME_UV).all(axis=(1, 2)))
 
 
-def measured(model: Path) -> dict[str, Any]:
-    """The counts for one file, decoded as by default, and what was dropped as noise."""
-    document = unpack(model.read_bytes())
-    mesh, report = textured_mesh(document)
-    counts = soundness(document, mesh)
+def counted(document: Document) -> dict[str, int]:
+    """The counts for a plain decode, and what was dropped as noise.
+
+    Membranes across the asset's openings are left in, as the rims that they leave are no cracks.
+    """
+    closed = replace(document, charts=replace(document.charts, openings=False))
+    mesh, report = textured_mesh(closed)
+    counts = soundness(closed, mesh)
     return {"resolution": report.resolution, **counts, "dropped_components": report.dropped}
 
 
@@ -85,7 +88,7 @@ def main(models: tuple[Path, ...], output: Path | None) -> None:
     """Count what must be 0 in plain decodes of MODELS."""
     record = {}
     for model in models:
-        record[model.stem] = measured(model)
+        record[model.stem] = counted(unpack(model.read_bytes()))
         click.echo(f"{model.stem}: {json.dumps(record[model.stem])}")
     if output is not None:
         output.parent.mkdir(parents=True, exist_ok=True)
