@@ -57,7 +57,10 @@ def main(
     Example: python -m benchmarks --assets ../shared/assets --quick
     """
     store = Store(output / "points")
-    planned = list(plan(chosen(assets, only, quick), codecs or USUAL, quick))
+    planned: list[Job | Record] = []
+    for source in chosen(assets, only, quick):
+        click.echo(f"{source.name}: reading", err=True)
+        planned += plan(source, codecs or USUAL, quick)
     for each in planned:
         if not isinstance(each, Job):
             store.put(each)

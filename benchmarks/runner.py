@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from dataclasses import dataclass, replace
 from functools import lru_cache
@@ -49,18 +49,17 @@ class Finished:
     seconds_left: float
 
 
-def plan(sources: Iterable[Source], codecs: Sequence[str], quick: bool) -> Iterator[Job | Record]:
-    """The points of a run, and a record for each codec that cannot run and each bad asset."""
-    for source in sources:
-        for name in codecs:
-            try:
-                settings = _settings(source, name, quick)
-            except (Unavailable, ImportError) as why:
-                yield _without(source, name, {"skipped": str(why)})
-            except Exception as why:
-                yield _without(source, name, {"failure": f"{type(why).__name__}: {why}"})
-            else:
-                yield from (Job(source.path, name, setting) for setting in settings)
+def plan(source: Source, codecs: Sequence[str], quick: bool) -> Iterator[Job | Record]:
+    """The points of one asset, and a record for each codec that cannot run on it."""
+    for name in codecs:
+        try:
+            settings = _settings(source, name, quick)
+        except (Unavailable, ImportError) as why:
+            yield _without(source, name, {"skipped": str(why)})
+        except Exception as why:
+            yield _without(source, name, {"failure": f"{type(why).__name__}: {why}"})
+        else:
+            yield from (Job(source.path, name, setting) for setting in settings)
 
 
 def drawings(measured: Sequence[Job], store: Store) -> Iterator[Job]:

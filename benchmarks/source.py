@@ -17,6 +17,7 @@ from nispcodec.metrics.surface import SurfacePoints
 
 SEED = 0
 SAMPLES = 100_000
+ROUGH = 2000
 
 # Where on a face one looks to tell whether it is hidden, if none of the reference's points says so.
 PLACES = np.array([[1, 1, 1], [8, 1, 1], [1, 8, 1], [1, 1, 8]])
@@ -42,6 +43,11 @@ class Source:
     def reference(self) -> Reference:
         """SAMPLES points with SEED."""
         return Reference.of(self.mesh, samples=SAMPLES, seed=SEED)
+
+    @cached_property
+    def hidden_share(self) -> float:
+        """About how much of the surface lies inside other bodies: enough to plan with."""
+        return float(Reference.of(self.mesh, samples=ROUGH, seed=SEED).sides.hidden.mean())
 
     @cached_property
     def outer_faces(self) -> NDArray[np.bool_]:

@@ -35,8 +35,7 @@ def settings(source: Source, quick: bool) -> list[Setting]:
     """
     if find_spec("meshoptimizer") is None:
         raise Unavailable("meshoptimizer is not installed: extra `simplify`")
-    hidden = source.reference.sides.hidden.mean()
-    surfaces = ("all", "outer") if hidden > NOTABLE else ("all",)
+    surfaces = ("all", "outer") if source.hidden_share > NOTABLE else ("all",)
     shares = [kept for kept in (QUICK if quick else KEPT) if kept * len(source.mesh.faces) > FEWEST]
     grid = product(surfaces, shares, QUICK_BITS if quick else BITS)
     return [{"surface": surface, "kept": kept, "qp": p, "qt": t} for surface, kept, (p, t) in grid]

@@ -81,7 +81,7 @@ class Stub:
 def test_plan_goes_on_past_what_cannot_run(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(runner, "codec", lambda name: Stub())
     chosen = [Source(Path(f"{name}.obj")) for name in ("missing", "bad", "good")]
-    planned = list(plan(chosen, ["c"], quick=False))
+    planned = [each for source in chosen for each in plan(source, ["c"], quick=False)]
     assert planned[0] == {"asset": "missing", "codec": "c", "setting": {}, "skipped": "not here"}
     assert planned[1]["failure"] == "ValueError: cannot be read"
     assert planned[2:] == [Job(Path("good.obj"), "c", {"q": n}) for n in (1, 2)]
