@@ -20,13 +20,12 @@ MANY_PATCHES = 100
 PAPER_HIDDEN = (64,) * 8
 PAPER_LEVELS = 5
 STEPS = {"sdf": 11_000, "chart": 4_500, "uv": 5_500}
-WIDE_STEPS = {"sdf": 6_000, "chart": 3_500, "uv": 4_000}
-PRICES = {"sdf": 0.005, "chart": 0.02, "uv": 0.02}
+WIDE_STEPS = {"sdf": 6_500, "chart": 3_500, "uv": 4_800}
+
+PRICES = {"sdf": 0.005, "chart": 0.005, "uv": 0.01}
 """By what share of the loss a bit a weight less may raise it."""
 
-FINE_W0 = 45.0
-"""Frequency factor where detail is fine; it wants a lower rate."""
-PAPER_STEPS = 25_000
+PAPER_STEPS = 40_000
 """What twenty minutes on two cores allow of the published 2000 epochs of 10^6 samples."""
 
 
@@ -49,8 +48,8 @@ def balanced_tasks(charts: int, patches: int, sets: TrainingSets) -> list[Task]:
     """
     wide = patches > MANY_PATCHES
     steps = WIDE_STEPS if wide else STEPS
-    sdf = NetworkSpec((64 if wide else 48,) * 4, 1, w0=FINE_W0 if wide else 30.0)
-    chart = NetworkSpec((56 if wide else 32,) * 3, charts)
+    sdf = NetworkSpec((64 if wide else 48,) * 4, 1)
+    chart = NetworkSpec((56 if wide else 40,) * 3, charts)
     uv = NetworkSpec(
         (64 if wide else 40,) * 4, 2, conditioning="embedding", charts=charts, embedding=4
     )

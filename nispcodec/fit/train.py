@@ -19,7 +19,7 @@ from nispcodec.network import Network
 from nispcodec.progress import Listener, Progress
 
 WARM_UP = 0.15
-"""Share of the steps until the full rate: a fit that starts faster may learn |SDF| and never find the sign."""
+"""Share of the steps until the full rate: a fit that starts faster may learn |SDF| for good."""
 
 CLIP = 1.0
 CHECKS = 40
