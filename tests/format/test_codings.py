@@ -102,6 +102,7 @@ def test_numbers_take_the_smallest_kind() -> None:
 
 
 @given(st.integers(1, 2**31))
+@settings(deadline=None)
 def test_cells(limit: int) -> None:
     cells, left_open = curve.cells(limit)
     assert cells <= MAX_CELLS
@@ -158,6 +159,7 @@ def test_pruned_symbols_cost_little_more_than_their_entropy() -> None:
 
 
 @given(st.lists(st.tuples(st.integers(0, 2**32 - 1), st.integers(0, 32)), max_size=40))
+@settings(deadline=None)
 def test_bits(pairs: list[tuple[int, int]]) -> None:
     widths = np.array([width for _, width in pairs], np.uint8)
     values = np.array([value % 2**width for value, width in pairs], np.uint32)
@@ -167,6 +169,7 @@ def test_bits(pairs: list[tuple[int, int]]) -> None:
 
 
 @given(st.integers(0, 2**35 - 1))
+@settings(deadline=None)
 def test_varint(value: int) -> None:
     reader = Reader("NETS", varint(value))
     assert reader.varint("value", 2**35) == value

@@ -66,6 +66,7 @@ def test_every_single_byte_of_the_content_changed(data: bytes, code: bytes) -> N
 
 
 @given(st.binary(max_size=200))
+@settings(deadline=None)
 def test_noise(data: bytes) -> None:
     survives(data)
     survives(FILES[0][:8] + data)
