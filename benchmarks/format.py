@@ -54,8 +54,8 @@ def made(width: int) -> bytes:
         charts=ChartTable(
             np.zeros(CHARTS, np.int32),
             np.ones(CHARTS, np.bool_),
-            (-0.052242, 0.111175),
-            (1.04, 0.9),
+            (-0.25, 0.5),
+            (1.5, 0.75),
         ),
         materials=(Material("initialShadingGroup", maps={"base_color": TextureMap(0)}),),
         textures=(Texture("spot_texture.png", image.getvalue(), "image/png"),),
