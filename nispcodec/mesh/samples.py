@@ -28,6 +28,9 @@ OPENING_PROBES = 50_000
 OPENING_SHARE = 5e-4
 """From this share of probes near the surface that cross a membrane on, openings get a chart."""
 
+MUCH_HIDDEN = 0.05
+"""From this share of hidden area on, an opening would show that what was inside is gone."""
+
 MEMBRANE_JITTER = 5e-3
 """How far off a membrane (normalised frame) a network may put it."""
 
@@ -86,7 +89,7 @@ class Sampler:
             self.charts = self._merged(gap)
         self.table = chart_table(mesh, self.charts)
         self._crossings = np.zeros((0, 3))
-        if gap > 0:
+        if gap > 0 and self.solid.hidden_share < MUCH_HIDDEN:
             self._find_openings()
 
     def near(self, count: int, spread: float, signed: bool = True) -> SampleSet:
