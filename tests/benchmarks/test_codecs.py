@@ -12,7 +12,9 @@ from benchmarks.corners import corners_of
 from benchmarks.simplify import simplified
 from benchmarks.source import Source
 from nispcodec.decode.writers import write_mesh
+from nispcodec.format import pack
 from nispcodec.mesh.procedural import sample_asset
+from tests.tiny import document
 
 
 @pytest.fixture(scope="module")
@@ -97,3 +99,17 @@ def test_a_quick_run_has_fewer_settings(name: str, source: Source) -> None:
     quick, full = (codec(name).settings(source, quick) for quick in (True, False))
     assert 1 <= len(quick) <= len(full)
     assert all(setting in full for setting in quick)
+
+
+def test_a_decoded_model_shows_the_source_s_materials(source: Source) -> None:
+    decoded = codec("nisp").decode(pack(document()), source)
+    assert decoded.materials == source.mesh.materials
+    assert decoded.textures == source.mesh.textures
+    assert len(decoded.faces) > 0
+
+
+def test_the_paper_s_preset_runs_only_when_asked_for(source: Source) -> None:
+    presets = [setting["preset"] for setting in codec("nisp").settings(source, quick=False)]
+    assert "balanced" in presets
+    assert "paper" not in presets
+    assert codec("nisp_paper").settings(source, quick=False) == [{"preset": "paper"}]
