@@ -11,7 +11,7 @@ import torch
 from torch import Tensor
 from torch.nn import functional
 
-from nispcodec.fit.quantise import Quantiser
+from nispcodec.fit.quantise import Quantiser, snapped
 from nispcodec.network import Network, NetworkSpec, Weights
 
 
@@ -67,7 +67,7 @@ class Module:
                 tensors[name] = _array(values / rate)
                 continue
             step = self.quantiser.steps(index)[columns].reshape(-1)[0]
-            steps[name] = float(np.float32(step.item() / rate))
+            steps[name] = snapped(step.item() / rate)
             tensors[name] = _array((values / step).round()) * np.float32(steps[name])
         return Network(self.spec, tensors, steps)
 

@@ -8,6 +8,7 @@ step's grid; its gradient makes steps coarser and weights smaller, as far as the
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from typing import Any
 
 import torch
@@ -38,11 +39,20 @@ class Quantiser:
     def rounded(self, parameters: list[Tensor]) -> list[Tensor]:
         """The parameters as the file will hold them."""
         pairs = zip(parameters, self.groups, strict=True)
-        return [_Rounded.apply(parameter, self.log_steps, group) for parameter, group in pairs]
+        apply: Callable[..., Tensor] = _Rounded.apply
+        return [apply(parameter, self.log_steps, group) for parameter, group in pairs]
 
     def steps(self, parameter: int) -> Tensor:
         """The step of each column of one parameter."""
         return torch.exp2(self.log_steps.detach())[self.groups[parameter]]
+
+    @torch.no_grad()
+    def settle(self, rates: list[float]) -> None:
+        """Take the nearest steps that the file holds in one byte; `rates` as `Module.rates`."""
+        for group, rate in zip(self.groups, rates, strict=True):
+            for index in sorted(set(group.tolist())):
+                step = float(torch.exp2(self.log_steps[index]))
+                self.log_steps[index] = math.log2(snapped(step / rate) * rate)
 
     @torch.no_grad()
     def charge(self, parameters: list[Tensor], price: float) -> float:
@@ -69,6 +79,12 @@ class Quantiser:
         joined = torch.cat([value.sum(0) for value in values])
         index = torch.cat(self.groups)
         return joined.new_zeros(int(index.max()) + 1).index_add_(0, index, joined)
+
+
+def snapped(step: float) -> float:
+    """The nearest number of four significant bits."""
+    mantissa, exponent = math.frexp(step)
+    return round(mantissa * 16) / 16 * 2.0**exponent
 
 
 class _Rounded(torch.autograd.Function):

@@ -101,6 +101,8 @@ class _Run:
         """Begin a stage whose weights are not comparable with those before."""
         if self.module.quantiser is None:
             self.module.quantise()
+        else:
+            self.module.quantiser.settle(self.module.rates)
         self.best_error, self.best = math.inf, self._weights()
 
     def _charge(self, quantiser: Quantiser, learn: bool) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import threading
 from dataclasses import replace
 
@@ -10,7 +11,7 @@ import pytest
 import torch
 
 from nispcodec.fit.module import Module
-from nispcodec.fit.quantise import Quantiser
+from nispcodec.fit.quantise import Quantiser, snapped
 from nispcodec.fit.train import train
 from nispcodec.network import NetworkSpec
 from nispcodec.progress import silent
@@ -22,6 +23,8 @@ UV = NetworkSpec((6, 5), 2, conditioning="embedding", charts=4, embedding=3)
 def quantised_module() -> Module:
     module = Module(UV, torch.Generator().manual_seed(0), "cpu")
     module.quantise()
+    assert module.quantiser is not None
+    module.quantiser.settle(module.rates)
     return module
 
 
@@ -78,6 +81,21 @@ def test_the_charge_is_the_gradient_of_the_rate() -> None:
             rates.append(20 * quantiser.charge([matrix], 0.0))
             tensor[index] -= sign * 1e-2
         assert float(gradient[index]) == pytest.approx((rates[0] - rates[1]) / 2e-2, rel=0.02)
+
+
+@pytest.mark.parametrize("step", [1e-9, 0.0123, 1.0, 31.9, 1e6])
+def test_a_snapped_step_is_near_and_stays(step: float) -> None:
+    near = snapped(step)
+    assert near == pytest.approx(step, rel=1 / 16)
+    assert snapped(near * (1 + 1e-6)) == near
+    assert math.frexp(near)[0] * 16 % 1 == 0
+
+
+def test_settled_steps_are_what_is_stored() -> None:
+    module = quantised_module()
+    assert module.quantiser is not None
+    stored = module.network().steps["weight.0"] * module.rates[0]
+    assert float(module.quantiser.steps(0)[0]) == pytest.approx(stored, rel=1e-5)
 
 
 def bits(price: float) -> float:
