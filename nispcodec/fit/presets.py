@@ -19,7 +19,7 @@ MANY_PATCHES = 100
 
 PAPER_HIDDEN = (64,) * 8
 PAPER_LEVELS = 5
-STEPS = {"sdf": 11_000, "chart": 4_500, "uv": 5_500}
+STEPS = {"sdf": 10_000, "chart": 4_500, "uv": 5_500}
 WIDE_STEPS = {"sdf": 6_500, "chart": 3_500, "uv": 4_800}
 
 PRICES = {"sdf": 0.005, "chart": 0.005, "uv": 0.01}
