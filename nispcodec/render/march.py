@@ -7,7 +7,7 @@ ray has stepped through the surface, the crossing is found between its last two 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 
 import numpy as np
 from numpy.typing import NDArray
@@ -80,19 +80,19 @@ class March:
 
     def run(self) -> Trace:
         """First crossings of the surface."""
-        distances = np.full(len(self._origins), np.inf, np.float32)
+        found: list[tuple[_Front, Floats]] = []
         lost = np.zeros(len(self._origins), np.bool_)
         front, leave = self._into_ball()
         for _ in range(MAX_STEPS):
             radius = self._sphere(front.number, front.at)
             hit = (radius < 0) | ((radius < EPSILON) & ~_torn(front, radius))
-            distances[front.number[hit]] = self._crossing(front[hit], radius[hit])
+            found.append((front[hit], radius[hit]))
             front = _stepped(front[~hit], radius[~hit])
             front = front[front.at < leave[front.number]]
             if len(front.number) == 0:
                 break
         lost[front.number] = True
-        return Trace(distances, self._steps, lost)
+        return Trace(self._crossings(found), self._steps, lost)
 
     def _into_ball(self) -> tuple[_Front, Floats]:
         """The rays that meet the ball, where they enter it, and where each ray leaves it (n,)."""
@@ -119,23 +119,32 @@ class March:
     def _points(self, number: Indices, at: Floats) -> Floats:
         return self._origins[number] + at[:, None] * self._directions[number]
 
-    def _crossing(self, front: _Front, radius: Floats) -> Floats:
-        """Where the rays meet the surface: here, or within the step that went through it."""
+    def _crossings(self, found: list[tuple[_Front, Floats]]) -> Floats:
+        """Where the rays (n,) meet the surface: on their last point or in the step to it."""
+        front = _Front(
+            *(np.concatenate([getattr(each, f.name) for each, _ in found]) for f in fields(_Front))
+        )
+        radius = np.concatenate([each for _, each in found])
         # What is near the surface behind a torn step may be the far side of something thin.
         deep = (radius < -EPSILON) | _torn(front, radius)
         through = (radius < 0) & deep & (front.step > 0)
-        number, high, beyond = front.number[through], front.at[through], radius[through]
-        low, before = high - front.step[through], front.radius[through]
+        distances = np.full(len(self._origins), np.inf, np.float32)
+        distances[front.number] = front.at
+        distances[front.number[through]] = self._bracketed(front[through], radius[through])
+        return distances
+
+    def _bracketed(self, front: _Front, beyond: Floats) -> Floats:
+        """The surface between the last two points of rays, the spheres `beyond` it negative."""
+        high, low, before = front.at, front.at - front.step, front.radius
         for _ in range(REFINEMENTS):
             # A share of the bracket stays on either side, so that it always shrinks.
             share = np.clip(before / (before - beyond), 0.05, 0.95)
             middle = low + share * (high - low)
-            there = self._field(self._points(number, middle))
+            there = self._field(self._points(front.number, middle))
             low, before = np.where(there > 0, (middle, there), (low, before))
             high, beyond = np.where(there > 0, (high, beyond), (middle, there))
-        distances = front.at.copy()
-        distances[through] = low + (high - low) * before / (before - beyond)
-        return distances
+        crossing: Floats = low + (high - low) * before / (before - beyond)
+        return crossing
 
 
 def _torn(front: _Front, radius: Floats) -> NDArray[np.bool_]:
