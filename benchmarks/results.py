@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Sequence
 from pathlib import Path
 
 from benchmarks.machine import commit, machine, versions
@@ -33,7 +34,7 @@ def write_results(store: Store, folder: Path) -> Path:
 def gathered(store: Store) -> Record:
     """All points with where, when and with what they were measured, and the summary."""
     records = store.records()
-    points = [record for record in records if record["codec"] != TEXTURES]
+    points = current([record for record in records if record["codec"] != TEXTURES])
     return {
         "schema": SCHEMA,
         "commit": commit(),
@@ -45,3 +46,13 @@ def gathered(store: Store) -> Record:
         "textures": [record for record in records if record["codec"] == TEXTURES],
         "summary": summarised([row(record) for record in points]),
     }
+
+
+def current(points: Sequence[Record]) -> list[Record]:
+    """Without what an earlier run could not do with a codec, where a later one could."""
+    ran = {(each["asset"], each["codec"]) for each in points if "bytes" in each}
+    return [
+        each
+        for each in points
+        if "skipped" not in each or (each["asset"], each["codec"]) not in ran
+    ]

@@ -11,7 +11,7 @@ pytest.importorskip("matplotlib", reason="plots: extra `bench`")
 from benchmarks.paper.command import markdown
 from benchmarks.paper.quality import quality
 from benchmarks.paper.row import Comparison
-from benchmarks.results import write_results
+from benchmarks.results import current, write_results
 from benchmarks.store import Store
 from tests.benchmarks.test_summary import record
 
@@ -61,3 +61,9 @@ def test_paper_table_says_what_differs() -> None:
 
 def test_paper_quality_wants_points(tmp_path: Path) -> None:
     assert list(quality(Store(tmp_path))) == []
+
+
+def test_a_codec_that_was_installed_later_is_no_longer_skipped() -> None:
+    skipped = [{"asset": name, "codec": "gltfpack", "skipped": "no node here"} for name in "ab"]
+    ran = {"asset": "a", "codec": "gltfpack", "bytes": 10}
+    assert current([*skipped, ran]) == [skipped[1], ran]
