@@ -19,8 +19,8 @@ MANY_PATCHES = 100
 
 PAPER_HIDDEN = (64,) * 8
 PAPER_LEVELS = 5
-STEPS = {"sdf": 10_000, "chart": 4_500, "uv": 5_500}
-WIDE_STEPS = {"sdf": 6_500, "chart": 3_500, "uv": 4_800}
+STEPS = {"sdf": 7_500, "chart": 3_500, "uv": 4_400}
+WIDE_STEPS = {"sdf": 5_000, "chart": 2_800, "uv": 3_800}
 
 PRICES = {"sdf": 0.005, "chart": 0.005, "uv": 0.01}
 """By what share of the loss a bit a weight less may raise it."""
