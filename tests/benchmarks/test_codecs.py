@@ -92,7 +92,7 @@ def test_gltfpack_tells_when_it_is_missing(source: Source, monkeypatch: pytest.M
         gltfpack.settings(source, quick=False)
 
 
-@pytest.mark.parametrize("name", set(CODECS) - {"gltfpack"})
+@pytest.mark.parametrize("name", sorted(set(CODECS) - {"gltfpack"}))
 def test_a_quick_run_has_fewer_settings(name: str, source: Source) -> None:
     if name == "simplified_draco":
         pytest.importorskip("meshoptimizer", reason="extra `simplify`")
