@@ -19,7 +19,7 @@ MANY_PATCHES = 100
 
 PAPER_HIDDEN = (64,) * 8
 PAPER_LEVELS = 5
-STEPS = {"sdf": 7_500, "chart": 3_500, "uv": 4_400}
+STEPS = {"sdf": 7_500, "chart": 4_500, "uv": 4_400}
 WIDE_STEPS = {"sdf": 5_000, "chart": 2_800, "uv": 3_800}
 
 PRICES = {"sdf": 0.005, "chart": 0.005, "uv": 0.01}

@@ -12,9 +12,9 @@ TIGHT = 1 / 300
 SKIN = 3e-3
 """Mean distance of the samples for charts and UVs: decisions far from the surface are wasted."""
 
-NEAR_COUNT = 60_000
-TIGHT_COUNT = 280_000
-CUBE_COUNT = 60_000
+NEAR_COUNT = 80_000
+TIGHT_COUNT = 240_000
+CUBE_COUNT = 80_000
 SKIN_COUNT = 250_000
 MEMBRANE_COUNT = 12_000
 HELD_OUT_COUNT = 20_000
