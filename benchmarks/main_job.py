@@ -10,15 +10,15 @@ from __future__ import annotations
 import json
 import sys
 import tempfile
-from dataclasses import asdict, dataclass
+from dataclasses import asdict
 from pathlib import Path
-from typing import Any
 
 import click
 import numpy as np
 
 from benchmarks.machine import commit, machine, versions
 from benchmarks.measure import Run, run
+from benchmarks.target import Record, Target
 from nispcodec.asset import TexturedMesh
 from nispcodec.decode.model import NispModel
 from nispcodec.format import unpack
@@ -26,6 +26,7 @@ from nispcodec.mesh.load import load_mesh
 from nispcodec.metrics.compare import compare
 from nispcodec.metrics.pictures import compare_pictures
 from nispcodec.metrics.surface import frame_of
+from nispcodec.output import write_atomic
 from nispcodec.render.camera import turntable
 from nispcodec.render.views import on_white, render_views
 
@@ -34,30 +35,6 @@ NISP = Path(sys.executable).with_name("nisp")
 PRECISE = {"spot", "food_apple_01", "chess_king", "tea_set_01"}
 LARGE = {"flight_helmet", "gz_polaris"}
 VIEWS = 4
-
-Record = dict[str, Any]
-
-
-@dataclass(frozen=True)
-class Target:
-    """A number that issue 2 asks for: where it is in the record and what it may be."""
-
-    name: str
-    place: tuple[str, ...]
-    limit: float
-    at_least: bool = False
-
-    def measured(self, record: Record) -> float:
-        """The number in an asset's record."""
-        value: Any = record
-        for key in self.place:
-            value = value[key]
-        return float(value)
-
-    def met(self, record: Record) -> bool:
-        """Whether the measured number keeps the limit."""
-        value = self.measured(record)
-        return value >= self.limit if self.at_least else value <= self.limit
 
 
 def targets(asset: str) -> list[Target]:
@@ -120,16 +97,12 @@ def pictures(original: TexturedMesh, decoded: TexturedMesh) -> dict[str, float]:
 
 def table(records: dict[str, Record]) -> str:
     """Asked against measured, one line a number."""
-    lines = [f"{'asset':<18}{'what':<22}{'asked':>14}{'measured':>14}"]
+    lines = [f"{'asset':<18}{'what':<26}{'asked':>14}{'measured':>14}"]
     for asset, record in records.items():
         if "failure" in record:
             lines.append(f"{asset:<18}FAILED: {record['failure']}")
             continue
-        for target in targets(asset):
-            asked = f"{'>=' if target.at_least else '<='} {target.limit:.4g}"
-            verdict = "" if target.met(record) else "  MISSED"
-            measured = f"{target.measured(record):.4g}"
-            lines.append(f"{asset:<18}{target.name:<22}{asked:>14}{measured:>14}{verdict}")
+        lines += [target.line(asset, record) for target in targets(asset)]
     return "\n".join(lines)
 
 
@@ -149,9 +122,7 @@ def store(path: Path, records: dict[str, Record]) -> None:
     """Write all results so far, whole or not at all."""
     path.parent.mkdir(parents=True, exist_ok=True)
     everything = {"machine": machine(), "versions": versions(), "assets": records}
-    temporary = path.with_suffix(".part")
-    temporary.write_text(json.dumps(everything, indent=1) + "\n")
-    temporary.replace(path)
+    write_atomic(path, json.dumps(everything, indent=1).encode() + b"\n")
 
 
 @click.command()

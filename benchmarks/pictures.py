@@ -12,10 +12,8 @@ import json
 import os
 import sys
 import tempfile
-from dataclasses import dataclass
 from hashlib import sha256
 from pathlib import Path
-from typing import Any
 
 import click
 import numpy as np
@@ -23,6 +21,7 @@ import numpy as np
 import nispcodec
 from benchmarks.machine import commit, machine, versions
 from benchmarks.measure import run
+from benchmarks.target import Record, Target
 from nispcodec.decode.model import NispModel
 from nispcodec.mesh.load import load_mesh
 from nispcodec.metrics.pictures import compare_pictures
@@ -39,29 +38,6 @@ VIEWS, SIZE = 8, 512
 SILHOUETTES = 2
 PAPER = {"mse": 2.95, "psnr": 43.85, "ssim": 0.996}
 PRECISE = ("spot", "food_apple_01", "chess_king")
-
-Record = dict[str, Any]
-
-
-@dataclass(frozen=True)
-class Target:
-    """A number that issue 7 asks for: where it is in the record and what it may be."""
-
-    name: str
-    place: tuple[str, ...]
-    limit: float
-    at_least: bool = False
-
-    def line(self, asset: str, record: Record) -> str:
-        """Asked against measured."""
-        value: Any = record
-        for key in self.place:
-            value = value[key]
-        met = value >= self.limit if self.at_least else value <= self.limit
-        sign = ">=" if self.at_least else "<="
-        verdict = "" if met else "  MISSED"
-        return f"{asset:<18}{self.name:<26}{sign} {self.limit:<12.4g}{value:<10.4g}{verdict}"
-
 
 TARGETS = {
     "": [

@@ -9,8 +9,9 @@ from click.testing import CliRunner
 
 from benchmarks import main_job
 from benchmarks.machine import commit, machine, versions
-from benchmarks.main_job import Target, main, table, targets
+from benchmarks.main_job import main, table, targets
 from benchmarks.measure import run
+from benchmarks.target import Target
 
 RECORD = {
     "encode": {"seconds": 100.0, "peak_bytes": 10**9},

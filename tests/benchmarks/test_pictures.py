@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from benchmarks.paper_pictures import SIZE, _of_size, sight, without_charts
-from benchmarks.pictures import Target, likeness, silhouette, targets
+from benchmarks.pictures import likeness, silhouette, targets
+from benchmarks.target import Target
 from nispcodec.decode.model import NispModel
 from nispcodec.network import NetworkSpec
 from nispcodec.render.camera import Camera
