@@ -29,6 +29,8 @@ class Quantiser:
         self.groups = [_columns(matrix, 2 * layer) for layer, matrix in enumerate(matrices)]
         if table is not None:
             self.groups.append(torch.full((table.shape[1],), 2 * len(matrices)).to(table.device))
+        self._index = torch.cat(self.groups)
+        self._number = int(self._index.max()) + 1
         parameters = matrices if table is None else [*matrices, table]
         self.counts = self._sums([torch.ones_like(parameter) for parameter in parameters])
         spread = 0.5 * torch.log2(self._sums([p.detach().square() for p in parameters]))
@@ -55,8 +57,12 @@ class Quantiser:
                 self.log_steps[index] = math.log2(snapped(step / rate) * rate)
 
     @torch.no_grad()
-    def charge(self, parameters: list[Tensor], price: float) -> float:
-        """Add the gradient of `price` times the rate; returns the rate, bits a weight."""
+    def charge(self, parameters: list[Tensor], price: float) -> None:
+        """Add the gradient of `price` times the rate in bits.
+
+        A group of n weights with power p on a grid of step s costs n softplus(2 x) / 2 bits,
+        x = log2(sqrt(p) / s) + `GAUSSIAN_BITS`: a Gaussian's entropy, kept above 0.
+        """
         power = self._sums([parameter.square() for parameter in parameters]) / self.counts
         power += FLOOR**2
         excess = 2 * (0.5 * torch.log2(power) - self.log_steps + GAUSSIAN_BITS)
@@ -65,8 +71,6 @@ class Quantiser:
         pull = price * slope / (power * math.log(2))
         for parameter, group in zip(parameters, self.groups, strict=True):
             _add(parameter, parameter * pull[group])
-        bits = self.counts * torch.nn.functional.softplus(excess) / 2
-        return float(bits.sum() / self.counts.sum())
 
     def learn(self, moving: bool) -> None:
         """Move the steps along their gradient, unless they are settled; forget the gradient."""
@@ -77,8 +81,7 @@ class Quantiser:
     def _sums(self, values: list[Tensor]) -> Tensor:
         """The sum of every group's values."""
         joined = torch.cat([value.sum(0) for value in values])
-        index = torch.cat(self.groups)
-        return joined.new_zeros(int(index.max()) + 1).index_add_(0, index, joined)
+        return joined.new_zeros(self._number).index_add_(0, self._index, joined)
 
 
 def snapped(step: float) -> float:
