@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from numpy.typing import NDArray
 
 from benchmarks.decoder import naive
 from benchmarks.soundness import soundness
@@ -37,24 +38,21 @@ def test_a_uv_for_each_vertex_smears_across_the_seam(document: Document) -> None
     assert soundness(document, naive(document, 24))["two_chart_triangles"] > 0
 
 
+def with_faces(mesh: TexturedMesh, chosen: NDArray[np.integer]) -> TexturedMesh:
+    return replace(
+        mesh,
+        faces=mesh.faces[chosen],
+        uv_faces=mesh.uv_faces[chosen],
+        face_materials=mesh.face_materials[chosen],
+    )
+
+
 def test_holes_doubled_faces_and_doubled_vertices_count(
     document: Document, mesh: TexturedMesh
 ) -> None:
-    pick = np.r_[1 : len(mesh.faces)]
-    torn = replace(
-        mesh,
-        faces=mesh.faces[pick],
-        uv_faces=mesh.uv_faces[pick],
-        face_materials=mesh.face_materials[pick],
-    )
+    torn = with_faces(mesh, np.r_[1 : len(mesh.faces)])
     assert soundness(document, torn)["cracks"] == 3
-    again = np.r_[0, 0 : len(mesh.faces)]
-    doubled = replace(
-        mesh,
-        faces=mesh.faces[again],
-        uv_faces=mesh.uv_faces[again],
-        face_materials=mesh.face_materials[again],
-    )
+    doubled = with_faces(mesh, np.r_[0, 0 : len(mesh.faces)])
     assert soundness(document, doubled)["crowded_edges"] == 3
     loose = replace(mesh, positions=np.vstack([mesh.positions, mesh.positions[:1]]))
     assert soundness(document, loose)["duplicate_vertices"] == 1
