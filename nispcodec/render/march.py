@@ -7,7 +7,7 @@ ray has stepped through the surface, the crossing is found between its last two 
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -88,7 +88,7 @@ class March:
             hit = (radius < 0) | ((radius < EPSILON) & ~_torn(front, radius))
             found.append((front[hit], radius[hit]))
             front = _stepped(front[~hit], radius[~hit])
-            front = front[front.at < leave[front.number]]
+            front = _within(front, leave[front.number])
             if len(front.number) == 0:
                 break
         lost[front.number] = True
@@ -145,6 +145,16 @@ class March:
             high, beyond = np.where(there > 0, (high, beyond), (middle, there))
         crossing: Floats = low + (high - low) * before / (before - beyond)
         return crossing
+
+
+def _within(front: _Front, leave: Floats) -> _Front:
+    """Rays whose last sphere ends before they `leave`, their steps no longer than to there.
+
+    An over-relaxed step that ends beyond may have torn; only a point that is asked can tell.
+    """
+    start = front.at - front.step
+    step = np.minimum(front.step, leave - start)
+    return replace(front, at=start + step, step=step)[start + front.radius < leave]
 
 
 def _torn(front: _Front, radius: Floats) -> NDArray[np.bool_]:

@@ -73,6 +73,26 @@ def test_no_ray_slips_through_a_thin_plate(half: float, steepness: float) -> Non
     np.testing.assert_allclose(found[inside], distances[inside], atol=2e-3)
 
 
+def test_a_ray_that_speeds_away_still_meets_the_wall_before_it_leaves() -> None:
+    """Past one plate, along which the spheres grow, and out to another at the edge of the ball."""
+    both = np.array([[0, 0, 1.0], [0, 0, -1.0]])
+    # | |z| - 0.45 | - 0.05: two plates, nothing between them.
+    network = tiny.relu_network(
+        [
+            (both, np.zeros(2)),
+            (np.array([[1.0, 1.0], [-1.0, -1.0]]), np.array([-0.45, 0.45])),
+            (np.ones((1, 2)), np.array([-0.05])),
+        ]
+    )
+    x, z = np.meshgrid(np.linspace(0.4, 0.85, 20), np.linspace(0.3, 0.39, 10))
+    targets = np.stack([x.ravel(), 0 * x.ravel(), 0 * x.ravel() - 0.4], axis=1)
+    origins = np.stack([0 * x.ravel() - 0.85, 0 * x.ravel(), z.ravel()], axis=1)
+    lengths = np.linalg.norm(targets - origins, axis=1)
+    directions = ((targets - origins) / lengths[:, None]).astype(np.float32)
+    march = March(network, bounding_space(network), origins.astype(np.float32), directions)
+    np.testing.assert_allclose(march.run().distances, lengths, atol=5e-3)
+
+
 def test_what_is_far_from_the_surface_needs_no_network(ball: tuple[Network, Space]) -> None:
     origins, directions = rays(Camera())
     found = March(*ball, origins, directions).run()
