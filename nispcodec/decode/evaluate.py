@@ -7,16 +7,13 @@ into its weights beforehand.
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable
-from concurrent.futures import ThreadPoolExecutor
-from functools import cache
-from threading import Lock, local
+from threading import local
 
 import numpy as np
 from numpy.typing import NDArray
-from threadpoolctl import ThreadpoolController
 
+from nispcodec.decode.cores import on_every_core
 from nispcodec.errors import QueryError
 from nispcodec.network import Network, NetworkSpec
 
@@ -24,9 +21,10 @@ Floats = NDArray[np.float32]
 Charts = NDArray[np.int32]
 Integers = NDArray[np.integer]
 
-# Two layers' activations of a block, 64 wide, take a quarter of a megabyte of cache.
-BLOCK = 512
-_ALONE = Lock()
+# Bytes of two layers' activations of a block: they stay in a core's cache. Smaller blocks cost more
+# calls than they save, and threads wait for each other at every call.
+CACHE = 1 << 19
+SMALLEST = 64
 
 
 def evaluate(network: Network, points: Floats, charts: Integers | None = None) -> Floats:
@@ -43,7 +41,7 @@ def evaluate(network: Network, points: Floats, charts: Integers | None = None) -
     def block(part: slice) -> None:
         result[part] = forward(points[part], None if known is None else known[part]).T
 
-    _in_blocks(block, len(points))
+    _in_blocks(block, network.spec, len(points))
     return result
 
 
@@ -55,7 +53,7 @@ def classify(network: Network, points: Floats) -> Charts:
     def block(part: slice) -> None:
         result[part] = forward(points[part], None).argmax(axis=0)
 
-    _in_blocks(block, len(points))
+    _in_blocks(block, network.spec, len(points))
     return result
 
 
@@ -69,7 +67,7 @@ def contrast(network: Network, points: Floats, first: Charts, second: Charts) ->
         columns = np.arange(outputs.shape[1])
         result[part] = outputs[first[part], columns] - outputs[second[part], columns]
 
-    _in_blocks(block, len(points))
+    _in_blocks(block, network.spec, len(points))
     return result
 
 
@@ -85,7 +83,7 @@ def gradient(network: Network, points: Floats) -> tuple[Floats, Floats]:
     def block(part: slice) -> None:
         values[part], gradients[part] = forward.with_gradient(points[part])
 
-    _in_blocks(block, len(points))
+    _in_blocks(block, network.spec, len(points))
     return values, gradients
 
 
@@ -196,28 +194,14 @@ class _Forward:
         return np.ones_like(outputs)
 
 
-def _in_blocks(run: Callable[[slice], None], count: int) -> None:
-    blocks = [slice(start, start + BLOCK) for start in range(0, count, BLOCK)]
-    if len(blocks) < 2:
-        for part in blocks:
-            run(part)
-        return
-    # One BLAS thread a worker: BLAS's own threads would fight with the pool for the same cores. The
-    # limit is the whole process's, so that two evaluations at once would undo it for each other.
-    with _ALONE, _blas().limit(limits=1, user_api="blas"), ThreadPoolExecutor(_cores()) as pool:
-        list(pool.map(run, blocks))
+def _in_blocks(run: Callable[[slice], None], spec: NetworkSpec, count: int) -> None:
+    size = block_size(spec)
+    on_every_core(run, [slice(start, start + size) for start in range(0, count, size)])
 
 
-@cache
-def _blas() -> ThreadpoolController:
-    """The loaded BLAS libraries; looking for them takes milliseconds: once a process."""
-    return ThreadpoolController()
-
-
-def _cores() -> int:
-    if hasattr(os, "sched_getaffinity"):
-        return len(os.sched_getaffinity(0))
-    return os.cpu_count() or 1
+def block_size(spec: NetworkSpec) -> int:
+    """How many points are evaluated at a time."""
+    return max(CACHE // (8 * max(spec.hidden)), SMALLEST)
 
 
 def _checked_charts(spec: NetworkSpec, count: int, charts: Integers | None) -> Charts | None:

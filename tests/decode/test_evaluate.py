@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from threadpoolctl import threadpool_info
 
-from nispcodec.decode.evaluate import BLOCK, evaluate, gradient
+from nispcodec.decode.evaluate import block_size, evaluate, gradient
 from nispcodec.errors import QueryError
 from nispcodec.network import Network, NetworkSpec
 from tests import tiny
@@ -28,6 +28,8 @@ SPECS = {
         (8,), 2, encoding="fourier", levels=2, conditioning="embedding", charts=5, embedding=3
     ),
 }
+
+BLOCK = block_size(SPECS["siren"])
 
 
 def by_hand(network: Network, point: np.ndarray, chart: int) -> list[float]:

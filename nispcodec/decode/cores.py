@@ -1,0 +1,55 @@
+"""Work on every core: threads, as numpy lets others run while it computes."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from functools import cache
+from threading import Lock, local
+from typing import TypeVar
+
+from threadpoolctl import ThreadpoolController
+
+Part = TypeVar("Part")
+
+_ALONE = Lock()
+_mine = local()
+
+
+def on_every_core(run: Callable[[Part], object], parts: Sequence[Part]) -> None:
+    """Run on each of the parts, on as many threads as there are cores.
+
+    A part that does the same with parts of its own has one core for them. The first error is
+    raised when all threads have stopped.
+    """
+    workers = min(cores(), len(parts))
+    if workers < 2 or getattr(_mine, "busy", False):
+        for part in parts:
+            run(part)
+        return
+    waiting = iter(parts)
+
+    def work() -> None:
+        _mine.busy = True
+        for part in waiting:
+            run(part)
+
+    # One BLAS thread a worker: BLAS's own threads would fight with ours for the same cores. The
+    # limit is the whole process's, so that two callers at once would undo it for each other.
+    with _ALONE, _blas().limit(limits=1, user_api="blas"), ThreadPoolExecutor(workers) as pool:
+        for done in [pool.submit(work) for _ in range(workers)]:
+            done.result()
+
+
+def cores() -> int:
+    """How many cores this process may use."""
+    if hasattr(os, "sched_getaffinity"):
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1
+
+
+@cache
+def _blas() -> ThreadpoolController:
+    """The loaded BLAS libraries; looking for them takes milliseconds: once a process."""
+    return ThreadpoolController()
