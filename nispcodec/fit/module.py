@@ -18,9 +18,10 @@ from nispcodec.network import Network, NetworkSpec, Weights
 class Module:
     """A network under training.
 
-    Each layer is one matrix [W | b], so that a preconditioner sees weight and bias together. Sine
-    layers hold w0 W and w0 b, which saves a pass over the activations. With a quantiser it computes
-    with rounded weights, as the file will hold them.
+    All its numbers are one vector, so that rounding, clipping and charging are one operation each.
+    In it each layer is one matrix [W | b], so that a preconditioner sees weight and bias together,
+    and an embedding is the last matrix. Sine layers hold w0 W and w0 b, which saves a pass over the
+    activations. With a quantiser it computes with rounded weights, as the file will hold them.
     """
 
     quantiser: Quantiser | None = None
@@ -28,74 +29,86 @@ class Module:
     def __init__(self, spec: NetworkSpec, generator: torch.Generator, device: str) -> None:
         self.spec = spec
         matrices = _initial_matrices(spec, generator)
-        self.matrices = [matrix.to(device).requires_grad_() for matrix in matrices]
         table = torch.randn(spec.charts, max(spec.embedding, 1), generator=generator)
-        self.table = table.to(device).requires_grad_() if spec.embedding else None
-
-    @property
-    def parameters(self) -> list[Tensor]:
-        """Every matrix, first layer first, then the embedding if there is one."""
-        return self.matrices if self.table is None else [*self.matrices, self.table]
+        parts = [*matrices, table] if spec.embedding else matrices
+        self.shapes = [(part.shape[0], part.shape[1]) for part in parts]
+        self.weights = torch.cat([part.flatten() for part in parts]).to(device).requires_grad_()
 
     @property
     def rates(self) -> list[float]:
-        """Learning rate of each parameter relative to the schedule's."""
+        """Learning rate of each matrix relative to the schedule's."""
         sine = self.spec.w0 if self.spec.activation == "sine" else 1.0
         rates = [sine] * len(self.spec.hidden) + [1.0]
-        return rates if self.table is None else [*rates, 1.0]
+        return [*rates, 1.0] if self.spec.embedding else rates
 
     def __call__(self, points: Tensor, charts: Tensor | None = None) -> Tensor:
         """(n, 3) points, (n,) chart numbers -> (n, outputs)."""
-        matrices, table = self._used()
-        hidden = self._encoded(points, charts, table)
+        used = self.weights if self.quantiser is None else self.quantiser.rounded(self.weights)
+        parts = _matrices(used, self.shapes)
+        layers = parts[: len(self.spec.hidden) + 1]
+        hidden = self._encoded(points, charts, parts[-1])
         activation = torch.sin if self.spec.activation == "sine" else functional.relu
-        for matrix in matrices[:-1]:
+        for matrix in layers[:-1]:
             hidden = activation(_affine(matrix, hidden))
-        return _OUTPUTS[self.spec.output](_affine(matrices[-1], hidden))
+        return _OUTPUTS[self.spec.output](_affine(layers[-1], hidden))
 
     def quantise(self) -> None:
         """Compute with rounded weights from now on."""
-        self.quantiser = Quantiser(self.matrices, self.table)
+        self.quantiser = Quantiser(self.weights, self._groups())
 
     def network(self) -> Network:
         """The weights as they are now; with a quantiser each a symbol times its tensor's step."""
         tensors: dict[str, Weights] = {}
         steps: dict[str, float] = {}
-        for name, index, columns in self._named():
-            values, rate = self.parameters[index].detach()[:, columns], self.rates[index]
+        parts = _matrices(self.weights.detach(), self.shapes)
+        for group, (name, index, columns) in enumerate(self._named()):
+            values, rate = parts[index][:, columns], self.rates[index]
             if self.quantiser is None:
                 tensors[name] = _array(values / rate)
                 continue
-            step = self.quantiser.steps(index)[columns].reshape(-1)[0]
+            step = self.quantiser.steps[group]
             steps[name] = snapped(step.item() / rate)
             tensors[name] = _array((values / step).round()) * np.float32(steps[name])
-        return Network(self.spec, tensors, steps)
+        order = self.spec.shapes
+        return Network(self.spec, {name: tensors[name] for name in order}, steps)
+
+    def settle(self) -> None:
+        """Hold the steps of the quantiser to those that a file can hold."""
+        if self.quantiser is not None:
+            self.quantiser.settle([self.rates[index] for _, index, _ in self._named()])
 
     def _named(self) -> Iterator[tuple[str, int, slice | int]]:
-        """Name, parameter and columns of every tensor, in file order."""
-        if self.table is not None:
-            yield "embedding", len(self.matrices), slice(None)
-        for layer in range(len(self.matrices)):
+        """Name, matrix and columns of every tensor, as they follow each other in the vector."""
+        for layer in range(len(self.spec.hidden) + 1):
             yield f"weight.{layer}", layer, slice(0, -1)
             yield f"bias.{layer}", layer, -1
+        if self.spec.embedding:
+            yield "embedding", len(self.spec.hidden) + 1, slice(None)
 
-    def _used(self) -> tuple[list[Tensor], Tensor | None]:
-        """The matrices and the embedding that the function is computed with."""
-        if self.quantiser is None:
-            return self.matrices, self.table
-        used = self.quantiser.rounded(self.parameters)
-        return used[: len(self.matrices)], None if self.table is None else used[-1]
+    def _groups(self) -> Tensor:
+        """For each number of the vector that of its tensor."""
+        groups = torch.zeros(len(self.weights), dtype=torch.long, device=self.weights.device)
+        parts = _matrices(groups, self.shapes)
+        for group, (_, index, columns) in enumerate(self._named()):
+            parts[index][:, columns] = group
+        return groups
 
-    def _encoded(self, points: Tensor, charts: Tensor | None, table: Tensor | None) -> Tensor:
+    def _encoded(self, points: Tensor, charts: Tensor | None, table: Tensor) -> Tensor:
         spec = self.spec
         if spec.conditioning == "scalar" and charts is not None:
             scalar = (2 * charts[:, None] + 1) / spec.charts - 1
             points = torch.cat([points, scalar.to(points.dtype)], dim=1)
         if spec.encoding == "fourier":
             points = _fourier(points, spec.levels)
-        if table is not None and charts is not None:
+        if spec.embedding and charts is not None:
             points = torch.cat([points, functional.embedding(charts, table)], dim=1)
         return points
+
+
+def _matrices(vector: Tensor, shapes: list[tuple[int, int]]) -> list[Tensor]:
+    """The parts of a vector, as views of these shapes."""
+    parts = torch.split(vector, [rows * columns for rows, columns in shapes])
+    return [part.view(shape) for part, shape in zip(parts, shapes, strict=True)]
 
 
 def _affine(matrix: Tensor, values: Tensor) -> Tensor:

@@ -6,7 +6,9 @@ small matrix, so both sides are always preconditioned.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
+from itertools import groupby
 
 import torch
 from torch import Tensor
@@ -18,7 +20,7 @@ REFRESH_EVERY = 10
 
 @dataclass
 class _State:
-    """One parameter's moments and the two sides' covariance (left, right) and eigenbasis."""
+    """Matrices of one shape, stacked: moments and the two sides' covariances and eigenbases."""
 
     mean: Tensor
     square: Tensor
@@ -29,64 +31,77 @@ class _State:
 
 
 class Soap:
-    """Minimises with one learning rate a parameter; call `step` after `backward`."""
+    """Minimises over a vector of weights that holds matrices of `shapes`, each with its own rate.
 
-    def __init__(self, parameters: list[Tensor], rates: list[float]) -> None:
-        self.parameters = parameters
-        self.rates = rates
+    Call `step` after `backward`. Matrices that follow each other with equal shapes and rates are
+    moved in one operation.
+    """
+
+    def __init__(self, weights: Tensor, shapes: list[tuple[int, int]], rates: list[float]) -> None:
+        self.weights = weights
+        runs = [(key, len(list(run))) for key, run in groupby(zip(shapes, rates, strict=True))]
+        self.rates = [rate for (_, rate), _ in runs]
+        self.stacks = [(count, *shape) for (shape, _), count in runs]
         self.states: list[_State] = []
         self.steps = 0
 
     @torch.no_grad()
     def step(self, scale: float) -> None:
-        """Move every parameter by its rate times `scale`; the first call only measures."""
-        gradients = [parameter.grad for parameter in self.parameters]
-        present = [gradient for gradient in gradients if gradient is not None]
+        """Move every matrix by its rate times `scale`; the first call only measures."""
+        assert self.weights.grad is not None
+        gradients = self._stacked(self.weights.grad)
         if not self.states:
-            self.states = [_fresh_state(gradient) for gradient in present]
+            self.states = [_fresh_state(gradient) for gradient in gradients]
             return
         self.steps += 1
-        for parameter, rate, gradient, state in zip(
-            self.parameters, self.rates, present, self.states, strict=True
+        for matrices, rate, gradient, state in zip(
+            self._stacked(self.weights), self.rates, gradients, self.states, strict=True
         ):
-            parameter.sub_(_direction(gradient, state, self.steps), alpha=rate * scale)
+            matrices.sub_(_direction(gradient, state, self.steps), alpha=rate * scale)
             if self.steps % REFRESH_EVERY == 0:
                 _refresh(state)
 
+    def _stacked(self, vector: Tensor) -> list[Tensor]:
+        parts = torch.split(vector, [math.prod(stack) for stack in self.stacks])
+        return [part.view(stack) for part, stack in zip(parts, self.stacks, strict=True)]
+
 
 def _fresh_state(gradient: Tensor) -> _State:
-    left, right = gradient @ gradient.T, gradient.T @ gradient
+    left, right = gradient @ gradient.mT, gradient.mT @ gradient
     return _State(
         mean=torch.zeros_like(gradient),
         square=torch.zeros_like(gradient),
         left=left,
         right=right,
-        left_basis=torch.linalg.eigh(left)[1].flip(1),
-        right_basis=torch.linalg.eigh(right)[1].flip(1),
+        left_basis=torch.linalg.eigh(left)[1].flip(2),
+        right_basis=torch.linalg.eigh(right)[1].flip(2),
     )
 
 
 def _direction(gradient: Tensor, state: _State, steps: int) -> Tensor:
     """Adam's step in the rotated basis, rotated back; updates moments and covariances."""
-    rotated = state.left_basis.T @ gradient @ state.right_basis
+    rotated = state.left_basis.mT @ gradient @ state.right_basis
     state.mean.lerp_(gradient, 1 - BETA)
-    state.square.lerp_(rotated.square(), 1 - BETA)
-    state.left.lerp_(gradient @ gradient.T, 1 - BETA)
-    state.right.lerp_(gradient.T @ gradient, 1 - BETA)
+    state.square.lerp_(rotated.square_(), 1 - BETA)
+    state.left.lerp_(gradient @ gradient.mT, 1 - BETA)
+    state.right.lerp_(gradient.mT @ gradient, 1 - BETA)
     correction = 1 - BETA**steps
-    mean = state.left_basis.T @ state.mean @ state.right_basis
+    mean = state.left_basis.mT @ state.mean @ state.right_basis
     scaled = (mean / correction) / ((state.square / correction).sqrt_().add_(EPSILON))
-    return state.left_basis @ scaled @ state.right_basis.T
+    return state.left_basis @ scaled @ state.right_basis.mT
 
 
 def _refresh(state: _State) -> None:
     """One power iteration towards the eigenbasis; the second moments follow its order."""
     state.left_basis, rows = _iterate(state.left, state.left_basis)
     state.right_basis, columns = _iterate(state.right, state.right_basis)
-    state.square = state.square[rows][:, columns]
+    order = rows[:, :, None].expand_as(state.square)
+    state.square = state.square.gather(1, order)
+    state.square = state.square.gather(2, columns[:, None, :].expand_as(state.square))
 
 
 def _iterate(covariance: Tensor, basis: Tensor) -> tuple[Tensor, Tensor]:
-    eigenvalues = (basis * (covariance @ basis)).sum(dim=0)
+    eigenvalues = (basis * (covariance @ basis)).sum(dim=1)
     order = torch.argsort(eigenvalues, descending=True)
-    return torch.linalg.qr(covariance @ basis[:, order])[0], order
+    sorted_basis = basis.gather(2, order[:, None, :].expand_as(basis))
+    return torch.linalg.qr(covariance @ sorted_basis)[0], order

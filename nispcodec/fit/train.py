@@ -22,6 +22,7 @@ WARM_UP = 0.15
 """Share of the steps until the full rate: a fit that starts faster may learn |SDF| for good."""
 
 CLIP = 1.0
+TINY = 1e-12
 CHECKS = 40
 CHUNK = 25
 QUANTISED = 0.5
@@ -88,13 +89,12 @@ class _Run:
         if schedule.price and step in (_at(QUANTISED, schedule), _at(HARD, schedule)):
             self._harden()
         loss = self.task.loss(self.module, next(self.batches))
-        for parameter in self.module.parameters:
-            parameter.grad = None
+        self.module.weights.grad = None
         loss.backward()  # type: ignore[no-untyped-call]
         self._remember(float(loss.detach()))
         if self.module.quantiser is not None:
             self._charge(self.module.quantiser, learn=step < _at(HARD, schedule))
-        torch.nn.utils.clip_grad_norm_(self.module.parameters, CLIP)
+        self._clip()
         self.move(self.rate * _shape(schedule, step))
 
     def _harden(self) -> None:
@@ -102,13 +102,18 @@ class _Run:
         if self.module.quantiser is None:
             self.module.quantise()
         else:
-            self.module.quantiser.settle(self.module.rates)
+            self.module.settle()
         self.best_error, self.best = math.inf, self._weights()
 
     def _charge(self, quantiser: Quantiser, learn: bool) -> None:
         price = self.task.schedule.price * self.loss / self.task.spec.weight_count
-        quantiser.charge(self.module.parameters, price)
+        quantiser.charge(self.module.weights, price)
         quantiser.learn(learn)
+
+    def _clip(self) -> None:
+        gradient = self.module.weights.grad
+        assert gradient is not None
+        gradient.mul_((CLIP / (gradient.norm() + TINY)).clamp_(max=1.0))
 
     def _remember(self, loss: float) -> None:
         known = math.isfinite(self.loss)
@@ -139,15 +144,13 @@ class _Run:
         return f"diverged at step {done}: going on from the best weights at rate {self.rate:g}"
 
     def _optimiser(self) -> Callable[[float], None]:
-        parameters, rates = self.module.parameters, self.module.rates
+        module = self.module
         if self.task.schedule.optimiser == "soap":
-            return Soap(parameters, rates).step
-        groups = [{"params": [p], "lr": rate} for p, rate in zip(parameters, rates, strict=True)]
-        adam = torch.optim.Adam(groups)
+            return Soap(module.weights, module.shapes, module.rates).step
+        adam = torch.optim.Adam([module.weights])
 
         def move(rate: float) -> None:
-            for group, relative in zip(adam.param_groups, rates, strict=True):
-                group["lr"] = rate * relative
+            adam.param_groups[0]["lr"] = rate
             adam.step()
 
         return move
@@ -158,7 +161,7 @@ class _Run:
     def _learned(self) -> list[Tensor]:
         quantiser = self.module.quantiser
         steps = [] if quantiser is None else [quantiser.log_steps]
-        return [*self.module.parameters, *steps]
+        return [self.module.weights, *steps]
 
     @torch.no_grad()
     def _restore(self) -> None:

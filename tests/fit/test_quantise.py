@@ -15,7 +15,7 @@ from nispcodec.fit.quantise import Quantiser, snapped
 from nispcodec.fit.train import train
 from nispcodec.network import NetworkSpec
 from nispcodec.progress import silent
-from tests.fit.test_train import sdf_task
+from tests.fit.test_train import module_of, sdf_task
 
 UV = NetworkSpec((6, 5), 2, conditioning="embedding", charts=4, embedding=3)
 
@@ -24,7 +24,7 @@ def quantised_module() -> Module:
     module = Module(UV, torch.Generator().manual_seed(0), "cpu")
     module.quantise()
     assert module.quantiser is not None
-    module.quantiser.settle(module.rates)
+    module.settle()
     return module
 
 
@@ -40,33 +40,27 @@ def test_training_computes_what_the_file_will_hold() -> None:
     module = quantised_module()
     points = torch.rand(20, 3, generator=torch.Generator().manual_seed(1))
     charts = torch.arange(20) % 4
-    stored = Module(UV, torch.Generator(), "cpu")
-    for index, (weight, bias) in enumerate(module.network().layers):
-        joined = np.concatenate([weight, bias[:, None]], axis=1) * stored.rates[index]
-        stored.matrices[index].data = torch.from_numpy(joined.astype(np.float32))
-    assert stored.table is not None
-    stored.table.data = torch.from_numpy(module.network().tensors["embedding"])
+    stored = module_of(module.network())
     expected = stored(points, charts).detach().numpy()
     assert module(points, charts).detach().numpy() == pytest.approx(expected, abs=1e-4)
 
 
 def test_the_gradient_of_a_step_is_that_of_the_rounding() -> None:
     """Without a change of symbols the rounded weight is linear in the step."""
-    matrix = torch.tensor([[0.31, -0.7]], requires_grad=True)
-    quantiser = Quantiser([matrix], None)
-    (rounded,) = quantiser.rounded([matrix])
+    weights = torch.tensor([0.31, -0.7], requires_grad=True)
+    quantiser = Quantiser(weights, torch.tensor([0, 1]))
+    rounded = quantiser.rounded(weights)
     rounded.sum().backward()
-    with torch.no_grad():
-        error = (rounded - matrix)[0]
-    assert matrix.grad is not None
+    error = (rounded - weights).detach()
+    assert weights.grad is not None
     assert quantiser.log_steps.grad is not None
-    assert torch.equal(matrix.grad, torch.ones(1, 2))
+    assert torch.equal(weights.grad, torch.ones(2))
     assert torch.allclose(quantiser.log_steps.grad, error * np.log(2))
 
 
-def bits_of(matrix: torch.Tensor, log_steps: torch.Tensor) -> float:
-    """The entropy of a Gaussian on the grid, for the weights and the biases of one matrix."""
-    parts = [matrix.detach()[:, :-1], matrix.detach()[:, -1]]
+def bits_of(weights: torch.Tensor, log_steps: torch.Tensor) -> float:
+    """The entropy of a Gaussian on the grid, for 15 weights and then 5."""
+    parts = [weights.detach()[:15], weights.detach()[15:]]
     return sum(
         part.numel() * float(torch.log2(part.square().mean().sqrt() * 4.1327) - step)
         for part, step in zip(parts, log_steps.detach(), strict=True)
@@ -75,19 +69,19 @@ def bits_of(matrix: torch.Tensor, log_steps: torch.Tensor) -> float:
 
 def test_the_charge_is_the_gradient_of_the_rate() -> None:
     generator = torch.Generator().manual_seed(0)
-    matrix = torch.randn(5, 4, generator=generator).requires_grad_()
-    quantiser = Quantiser([matrix], None)
-    quantiser.charge([matrix], 1.0)
-    assert matrix.grad is not None
+    weights = torch.randn(20, generator=generator).requires_grad_()
+    quantiser = Quantiser(weights, (torch.arange(20) >= 15).long())
+    quantiser.charge(weights, 1.0)
+    assert weights.grad is not None
     assert quantiser.log_steps.grad is not None
     for tensor, gradient, index in (
-        (matrix.data, matrix.grad.clone(), (2, 1)),
+        (weights.data, weights.grad.clone(), (9,)),
         (quantiser.log_steps.data, quantiser.log_steps.grad.clone(), (0,)),
     ):
         rates = []
         for sign in (1, -1):
             tensor[index] += sign * 1e-2
-            rates.append(bits_of(matrix, quantiser.log_steps))
+            rates.append(bits_of(weights, quantiser.log_steps))
             tensor[index] -= sign * 1e-2
         assert float(gradient[index]) == pytest.approx((rates[0] - rates[1]) / 2e-2, rel=0.02)
 
@@ -104,7 +98,7 @@ def test_settled_steps_are_what_is_stored() -> None:
     module = quantised_module()
     assert module.quantiser is not None
     stored = module.network().steps["weight.0"] * module.rates[0]
-    assert float(module.quantiser.steps(0)[0]) == pytest.approx(stored, rel=1e-5)
+    assert float(module.quantiser.steps[0]) == pytest.approx(stored, rel=1e-5)
 
 
 def bits(price: float) -> float:

@@ -46,6 +46,17 @@ def run(task: Task, listen: Callable[[Progress], None] = silent, seed: int = 0) 
     return train(task, seed, "cpu", threading.Lock(), listen)
 
 
+def module_of(network: Network) -> Module:
+    """The torch side of a stored network."""
+    module = Module(network.spec, torch.Generator(), "cpu")
+    layers = [np.concatenate([weight, bias[:, None]], axis=1) for weight, bias in network.layers]
+    table = [network.tensors["embedding"]] if network.spec.embedding else []
+    scaled = zip([*layers, *table], module.rates, strict=True)
+    vector = np.concatenate([(part * rate).ravel() for part, rate in scaled])
+    module.weights.data = torch.from_numpy(vector.astype(np.float32))
+    return module
+
+
 @pytest.mark.parametrize("optimiser", ["soap", "adam"])
 def test_it_learns_a_ball(optimiser: str) -> None:
     seen: list[Progress] = []
@@ -65,13 +76,7 @@ def test_the_returned_weights_are_the_best_seen() -> None:
         return error
 
     network = run(replace(task, error=noted))
-    module = Module(task.spec, torch.Generator(), "cpu")
-    for matrix, (weight, bias), rate in zip(
-        module.matrices, network.layers, module.rates, strict=True
-    ):
-        joined = np.concatenate([weight, bias[:, None]], axis=1) * rate
-        matrix.data = torch.from_numpy(joined.astype(np.float32))
-    final = float(distance_error(module, Batch.of(task.held_out, "cpu")).detach())
+    final = float(distance_error(module_of(network), Batch.of(task.held_out, "cpu")).detach())
     assert final == pytest.approx(min(seen), rel=1e-3)
 
 
@@ -134,12 +139,14 @@ def test_a_device_that_is_not_there_is_an_error(device: str) -> None:
 
 
 def test_soap_finds_the_minimum_of_a_badly_scaled_quadratic() -> None:
+    """Two matrices of one shape, which are moved together, and one of another."""
     torch.manual_seed(0)
-    scales = torch.logspace(-3, 0, 6)
-    target = torch.randn(4, 6)
-    parameter = torch.zeros(4, 6, requires_grad=True)
-    soap = Soap([parameter], [1.0])
+    shapes = [(4, 6), (4, 6), (3, 2)]
+    target = torch.randn(54)
+    scales = torch.cat([torch.logspace(-3, 0, 6).repeat(8), torch.ones(6)])
+    weights = torch.zeros(54, requires_grad=True)
+    soap = Soap(weights, shapes, [1.0, 1.0, 0.5])
     for step in range(600):
-        parameter.grad = (parameter.detach() - target) * scales**2
+        weights.grad = (weights.detach() - target) * scales**2
         soap.step(0.05 * (1 - step / 600))
-    assert torch.allclose(parameter, target, atol=0.02)
+    assert torch.allclose(weights, target, atol=0.02)
