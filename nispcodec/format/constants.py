@@ -11,15 +11,15 @@ MAJOR = 1
 MINOR = 0
 
 HEADER_SIZE = 16
-ENTRY_SIZE = 22
+ENTRY_SIZE = 21
 CRITICAL = 1
+PACKED = 2
 
 META = "META"
 NETS = "NETS"
 TXTR = "TXTR"
 SECTIONS = (META, NETS, TXTR)
 
-PACKINGS = ("raw", "zstd")
 NETWORKS = ("sdf", "chart", "uv")
 CODINGS = ("dense", "coo", "csc", "csr", "dia", "entropy")
 MEASURES = (
@@ -32,8 +32,10 @@ MEASURES = (
     "uv_error_median",
     "uv_error_mean",
 )
+PRESETS = ("balanced", "paper")
 STEPS = ("byte", "float16", "float32", "same")
 NUMBERS = ("float32", "float16", "int8", "int16", "int32")
+ENDINGS = (".png", ".jpg", ".webp", ".avif")
 
 MAX_SECTIONS = 64
 MAX_FILE = 2**31 - 1

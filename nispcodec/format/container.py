@@ -20,12 +20,12 @@ from nispcodec.format.constants import (
     MAX_SECTIONS,
     MAX_UNPACKED,
     MINOR,
-    PACKINGS,
+    PACKED,
     SIGNATURE,
 )
 
 _HEADER = struct.Struct("<8sBBHI")
-_ENTRY = struct.Struct("<4sBBIIII")
+_ENTRY = struct.Struct("<4sBIIII")
 _CODE = re.compile(rb"[A-Z0-9]{4}")
 _ZSTD_LEVEL = 19
 _ZSTD_LEVEL_LARGE = 3
@@ -65,8 +65,8 @@ def write_container(sections: Iterable[tuple[str, bool, bytes]]) -> bytes:
         packing, payload = pack_content(content, budget)
         budget -= len(content) if packing == "zstd" else 0
         numbers = (offset, len(payload), len(content), crc32(payload))
-        packing_number = 1 + PACKINGS.index(packing)
-        table += _ENTRY.pack(code.encode(), CRITICAL * critical, packing_number, *numbers)
+        flags = CRITICAL * critical | PACKED * (packing == "zstd")
+        table += _ENTRY.pack(code.encode(), flags, *numbers)
         payloads.append(payload)
         offset += len(payload)
         if offset > MAX_FILE:
@@ -143,26 +143,26 @@ def _read_header(data: bytes) -> int:
 
 
 def _read_entry(data: bytes, row: int, start: int) -> Entry:
-    raw_code, flags, packing, offset, stored, decoded, checksum = _ENTRY.unpack_from(
+    raw_code, flags, offset, stored, decoded, checksum = _ENTRY.unpack_from(
         data, HEADER_SIZE + ENTRY_SIZE * row
     )
     code = _check_code(raw_code)
-    if flags & ~CRITICAL:
-        raise FormatError(code, "flags", f"0 or {CRITICAL}", flags)
-    if not 1 <= packing <= len(PACKINGS):
-        raise FormatError(code, "packing", f"1 to {len(PACKINGS)}", packing)
+    if flags & ~(CRITICAL | PACKED):
+        raise FormatError(code, "flags", f"0 to {CRITICAL | PACKED}", flags)
+    packed = bool(flags & PACKED)
     if offset != start:
         raise FormatError(code, "offset", start, offset)
     if stored > len(data) - start:
         raise FormatError(code, "stored length", f"at most {len(data) - start}", stored)
-    if packing == 1 and decoded != stored:
+    if not packed and decoded != stored:
         raise FormatError(code, "decoded length", stored, decoded)
-    if packing == 2 and decoded <= stored:
+    if packed and decoded <= stored:
         raise FormatError(code, "decoded length", f"more than the {stored} stored", decoded)
     payload = memoryview(data)[start : start + stored]
     if crc32(payload) != checksum:
         raise FormatError(code, "checksum", f"{crc32(payload):#010x}", f"{checksum:#010x}")
-    return Entry(code, bool(flags & CRITICAL), PACKINGS[packing - 1], offset, decoded, payload)
+    packing = "zstd" if packed else "raw"
+    return Entry(code, bool(flags & CRITICAL), packing, offset, decoded, payload)
 
 
 def _check_code(code: bytes) -> str:

@@ -115,12 +115,13 @@ def _read_textures(meta: metadata.Metadata, entries: Mapping[str, Entry]) -> tup
     if not meta.textures and TXTR in entries:
         raise FormatError(TXTR, "section", "absent without textures", "present")
     data = _required(entries, TXTR) if meta.textures else memoryview(b"")
-    total = sum(length for _, _, length in meta.textures)
-    if total != len(data):
-        raise FormatError(TXTR, "length", total, len(data))
+    others = sum(length for _, _, length in meta.textures if length is not None)
+    if others > len(data):
+        raise FormatError(TXTR, "length", f"at least {others} bytes", len(data))
     textures: list[Texture] = []
     start = 0
     for name, mime, length in meta.textures:
-        textures.append(Texture(name, bytes(data[start : start + length]), mime))
-        start += length
+        end = len(data) if length is None else start + length
+        textures.append(Texture(name, bytes(data[start:end]), mime))
+        start = end
     return tuple(textures)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 from nispcodec.asset import (
@@ -14,11 +15,13 @@ from nispcodec.asset import (
     Texture,
     TextureMap,
 )
-from nispcodec.format.constants import MAX_FILE, MAX_ITEMS, META
+from nispcodec.errors import FormatError
+from nispcodec.format.constants import ENDINGS, MAX_FILE, MAX_ITEMS, META
 from nispcodec.format.record import Record, check_file_name, check_text, number, sparse
 
 _WHITE = (1.0, 1.0, 1.0, 1.0)
 _BLACK = (0.0, 0.0, 0.0)
+_ENDING = dict(zip(MIME_TYPES, ENDINGS, strict=True))
 
 
 def encode_material(material: Material) -> dict[int, Any]:
@@ -70,23 +73,47 @@ def decode_material(index: int, value: Any) -> Material:
     return material
 
 
-def encode_texture(texture: Texture) -> dict[int, Any]:
-    """The fields of one texture; its bytes go to TXTR."""
+def encode_textures(textures: Sequence[Texture]) -> list[dict[int, Any]]:
+    """The fields of every texture; the bytes go to TXTR, whose end is that of the last."""
+    fields = [_encode_texture(texture) for texture in textures]
+    for each, texture in zip(fields[:-1], textures, strict=False):
+        each[3] = len(texture.data)
+    return fields
+
+
+def decode_textures(values: list[Any]) -> tuple[tuple[str, str, int | None], ...]:
+    """Name, mime type and length of every texture; None for the last: what is left of TXTR."""
+    return tuple(
+        _decode_texture(Record(META, f"textures.{index}", value), index == len(values) - 1)
+        for index, value in enumerate(values)
+    )
+
+
+def _encode_texture(texture: Texture) -> dict[int, Any]:
     path = f"textures.{texture.name}"
     check_file_name(META, f"{path}.name", texture.name)
+    if "." not in texture.name:
+        raise FormatError(META, f"{path}.name", "a file name with an ending", texture.name)
     mime = number(META, f"{path}.mime", texture.mime, MIME_TYPES)
-    return sparse({1: (texture.name, None), 2: (mime, 1), 3: (len(texture.data), 0)})
+    return sparse({1: (_stored_name(texture.name, texture.mime), None), 2: (mime, 1)})
 
 
-def decode_texture(index: int, value: Any) -> tuple[str, str, int]:
-    """Name, mime type and length of texture `index`."""
-    record = Record(META, f"textures.{index}", value)
-    name = record.text(1, "name")
-    check_file_name(META, f"{record.path}.name", name)
+def _decode_texture(record: Record, last: bool) -> tuple[str, str, int | None]:
+    stored = record.text(1, "name")
     mime = record.member(2, "mime", MIME_TYPES)
-    length = record.integer(3, "length", 0, MAX_FILE, 0)
+    name = stored if "." in stored else stored + _ENDING[mime]
+    check_file_name(META, f"{record.path}.name", stored)
+    if _stored_name(name, mime) != stored:
+        raise record.error("name", f"no ending, being {_ENDING[mime]}", repr(stored))
+    length = None if last else record.integer(3, "length", 0, MAX_FILE)
     record.finish()
     return name, mime, length
+
+
+def _stored_name(name: str, mime: str) -> str:
+    """Without the ending that its type has, if that leaves no dot."""
+    stem = name.removesuffix(_ENDING[mime])
+    return name if stem == "" or "." in stem else stem
 
 
 def _encode_map(path: str, used: TextureMap) -> dict[int, Any]:

@@ -1,8 +1,8 @@
 """The `info` field of META: how a file was made and what was measured.
 
-Keys that the format knows are numbers on disk; other keys are text. Shares and errors are counted
-in millionths where that is exact, other floats are float32: three digits are all that a measurement
-is good for.
+Keys and presets that the format knows are numbers on disk; others are text. Shares and errors are
+counted in millionths where that is exact, other floats are float32: three digits are all that a
+measurement is good for.
 """
 
 from __future__ import annotations
@@ -13,11 +13,11 @@ from typing import Any
 import numpy as np
 
 from nispcodec.errors import FormatError
-from nispcodec.format.constants import MEASURES, META
+from nispcodec.format.constants import MEASURES, META, PRESETS
 
 Scalar = str | int | float | bool
 _PLAIN = "text, a number or a bool"
-_COUNTED = MEASURES[2:]
+_PRESET, _COUNTED = MEASURES[0], MEASURES[2:]
 _MILLION = 1_000_000
 _MOST = 1000.0
 
@@ -41,7 +41,10 @@ def decode(stored: dict[Any, Any]) -> dict[str, Scalar]:
             raise _error(key, _PLAIN, type(value).__name__)
         name = _name(key)
         counted = name in _COUNTED and type(value) is int
-        info[name] = value / _MILLION if counted else _shortest(value)
+        if name == _PRESET:
+            info[name] = _preset(value)
+        else:
+            info[name] = value / _MILLION if counted else _shortest(value)
     return info
 
 
@@ -53,7 +56,19 @@ def _name(key: object) -> str:
     return key
 
 
+def _preset(value: Scalar) -> str:
+    if type(value) is int and 1 <= value <= len(PRESETS):
+        return PRESETS[value - 1]
+    if not isinstance(value, str) or value in PRESETS:
+        raise _error(_PRESET, f"1 to {len(PRESETS)}, or another name", repr(value))
+    return value
+
+
 def _stored(key: str, value: Scalar) -> Scalar:
+    if key == _PRESET:
+        if not isinstance(value, str):
+            raise _error(key, "text", type(value).__name__)
+        return 1 + PRESETS.index(value) if value in PRESETS else value
     if key in _COUNTED and not isinstance(value, str):
         count = round(value * _MILLION) if abs(value) < _MOST else 0
         return count if count / _MILLION == value else _single(float(value))

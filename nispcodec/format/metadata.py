@@ -14,9 +14,9 @@ from nispcodec.format import canonical, measures, topology
 from nispcodec.format.constants import META
 from nispcodec.format.materials import (
     decode_material,
-    decode_texture,
+    decode_textures,
     encode_material,
-    encode_texture,
+    encode_textures,
 )
 from nispcodec.format.record import Record, sparse
 from nispcodec.network import MAX_CHARTS, NetworkSpec
@@ -26,12 +26,12 @@ _UV_MAP = (0.0, 0.0, 1.0, 1.0)
 
 @dataclass(frozen=True)
 class Metadata:
-    """What META holds; `textures` are (name, mime, length of the image in TXTR)."""
+    """What META holds; `textures` are (name, mime, length in TXTR); the last takes what is left."""
 
     frame: Frame
     charts: ChartTable
     materials: tuple[Material, ...]
-    textures: tuple[tuple[str, str, int], ...]
+    textures: tuple[tuple[str, str, int | None], ...]
     specs: dict[str, NetworkSpec]
     shell: float
     info: Mapping[str, measures.Scalar]
@@ -49,7 +49,7 @@ def encode(document: Document) -> bytes:
         5: (b"" if table.has_uv.all() else np.packbits(table.has_uv).tobytes(), b""),
         6: ([float(x) for x in (*table.uv_offset, *table.uv_scale)], list(_UV_MAP)),
         7: ([encode_material(material) for material in document.materials], [{}]),
-        8: ([encode_texture(texture) for texture in document.textures], []),
+        8: (encode_textures(document.textures), []),
         9: (float(document.shell), 0.0),
         10: (measures.encode(document.info), {}),
         11: (table.openings, False),
@@ -67,15 +67,11 @@ def decode(data: bytes | memoryview) -> Metadata:
         decode_material(index, value)
         for index, value in enumerate(record.take(7, "materials", list, [{}]))
     )
-    textures = tuple(
-        decode_texture(index, value)
-        for index, value in enumerate(record.take(8, "textures", list, []))
-    )
     metadata = Metadata(
         frame=Frame((x, y, z), radius),
         charts=_decode_charts(record, count, len(materials)),
         materials=materials,
-        textures=textures,
+        textures=decode_textures(record.take(8, "textures", list, [])),
         specs=topology.decode(networks, count),
         shell=record.take(9, "shell", float, 0.0),
         info=measures.decode(record.take(10, "info", dict, {})),

@@ -17,14 +17,13 @@ class Row:
     code: bytes
     payload: bytes
     flags: int = 1
-    packing: int = 1
     offset: int | None = None
     stored: int | None = None
     decoded: int | None = None
     checksum: int | None = None
 
     def entry(self, position: int) -> bytes:
-        """The 22 bytes of the table."""
+        """The 21 bytes of the table."""
         size = len(self.payload)
         claims = (
             (self.offset, position),
@@ -33,7 +32,7 @@ class Row:
             (self.checksum, zlib.crc32(self.payload)),
         )
         numbers = [truth if claim is None else claim for claim, truth in claims]
-        return struct.pack("<4sBBIIII", self.code, self.flags, self.packing, *numbers)
+        return struct.pack("<4sBIIII", self.code, self.flags, *numbers)
 
 
 def container(
@@ -45,7 +44,7 @@ def container(
     checksum: int | None = None,
 ) -> bytes:
     """The file with these rows, in this order."""
-    position = 16 + 22 * len(rows)
+    position = 16 + 21 * len(rows)
     table = b""
     for row in rows:
         table += row.entry(position)

@@ -81,10 +81,10 @@ class Reader:
         return found
 
 
-def unpacked(row: tuple[str, bool, int, bytes, int]) -> bytes:
+def unpacked(row: tuple[str, bool, bool, bytes, int]) -> bytes:
     """The content of a section."""
-    _, _, packing, payload, length = row
-    if packing == 2:
+    _, _, packed, payload, length = row
+    if packed:
         assert zstandard.get_frame_parameters(payload).content_size == length
         payload = zstandard.ZstdDecompressor().decompress(payload, allow_extra_data=False)
     assert len(payload) == length
@@ -123,7 +123,7 @@ def images(described: list[dict[int, Any]], data: bytes) -> list[Any]:
     """RGBA in [0, 1] of every texture, row by row."""
     found, at = [], 0
     for each in described:
-        length = each.get(3, 0)
+        length = each.get(3, len(data) - at)
         image = Image.open(BytesIO(data[at : at + length])).convert("RGBA")
         found.append((np.asarray(image, np.float64) / 255).tolist())
         at += length

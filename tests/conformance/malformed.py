@@ -104,10 +104,8 @@ def _entries() -> Iterator[Malformed]:
     claims: dict[str, tuple[dict[str, Any], str, str]] = {
         "code-lower-case": ({"code": b"nets"}, "header", "section code"),
         "code-not-ascii": ({"code": b"N\xc9TS"}, "header", "section code"),
-        "flags-unknown": ({"flags": 3}, "NETS", "flags"),
+        "flags-unknown": ({"flags": 5}, "NETS", "flags"),
         "flags-ancillary": ({"flags": 0}, "NETS", "flags"),
-        "packing-reserved": ({"packing": 0}, "NETS", "packing"),
-        "packing-unknown": ({"packing": 3}, "NETS", "packing"),
         "offset-gap": ({"offset": 1000}, "NETS", "offset"),
         "offset-overlap": ({"offset": 16}, "NETS", "offset"),
         "stored-too-long": ({"stored": 2**32 - 1}, "NETS", "stored length"),
@@ -132,7 +130,7 @@ def _sections() -> Iterator[Malformed]:
     yield Malformed("meta-missing", container(two[1:]), "META", "section")
     yield Malformed("nets-missing", container(two[:1]), "NETS", "section")
     yield Malformed("txtr-unasked", container([*two, Row(b"TXTR", b"")]), "TXTR", "section")
-    textured = rows(meta({8: [{1: "a.png", 3: 5}]}))
+    textured = rows(meta({8: [{1: "a", 3: 5}, {1: "b"}]}))
     yield Malformed("txtr-missing", container(textured), "TXTR", "section")
     short = [*textured, Row(b"TXTR", b"1234")]
     yield Malformed("txtr-too-short", container(short), "TXTR", "length")
@@ -152,10 +150,10 @@ def _packings() -> Iterator[Malformed]:
         "zstd-not-smaller": (packed, len(packed), "decoded length"),
     }
     for name, (payload, decoded, field) in cases.items():
-        claim = {"payload": payload, "packing": 2, "decoded": decoded}
+        claim = {"payload": payload, "flags": 3, "decoded": decoded}
         yield Malformed(name, container(change(rows(), b"NETS", **claim)), "NETS", field)
     bomb = squeezed(bytes(2**25 + 1))
-    claim = {"payload": bomb, "packing": 2, "decoded": 2**25 + 1}
+    claim = {"payload": bomb, "flags": 3, "decoded": 2**25 + 1}
     file = container(change(rows(), b"NETS", **claim))
     yield Malformed("zstd-bomb", file, "header", "decoded length")
 
@@ -188,7 +186,7 @@ def _encodings() -> Iterator[Malformed]:
     crowd = msgpack.packb({1: [[1] * 4095 for _ in range(5)]})
     long = bytes(2**18 + 1)
     for name, data, field in (("crowd", crowd, "values"), ("too-long", long, "length")):
-        claim = {"payload": squeezed(data), "packing": 2, "decoded": len(data)}
+        claim = {"payload": squeezed(data), "flags": 3, "decoded": len(data)}
         file = container(change(rows(), b"META", **claim))
         yield Malformed(f"msgpack-{name}", file, "META", field)
 
@@ -221,6 +219,9 @@ _FIELDS: dict[str, tuple[dict[int, Any], str]] = {
     "info-key-by-name": ({10: {"seed": 1}}, "document.info.seed"),
     "info-key-bool": ({10: {True: 1}}, "document.info.True"),
     "info-value": ({10: {1: [1]}}, "document.info.1"),
+    "preset-reserved": ({10: {1: 0}}, "document.info.preset"),
+    "preset-unknown": ({10: {1: 3}}, "document.info.preset"),
+    "preset-by-name": ({10: {1: "paper"}}, "document.info.preset"),
 }
 _SPECS: dict[str, tuple[dict[int, Any], str]] = {
     "hidden-missing": ({}, "hidden"),
@@ -267,15 +268,20 @@ def _materials() -> Iterator[Malformed]:
     }
     for name, (fields, field) in cases.items():
         yield Malformed(name, container(rows(meta({7: [fields]}))), "META", f"materials.0.{field}")
-    textures: dict[str, tuple[dict[int, Any], str]] = {
-        "texture-nameless": ({3: 1}, "name"),
-        "texture-path": ({1: "../a.png", 3: 1}, "name"),
-        "texture-mime-unknown": ({1: "a.png", 2: 5, 3: 1}, "mime"),
-        "texture-negative": ({1: "a.png", 3: -1}, "length"),
-        "texture-key-unknown": ({1: "a.png", 3: 1, 4: 1}, "keys"),
+    last = {1: "z"}
+    textures: dict[str, tuple[list[dict[int, Any]], str]] = {
+        "texture-nameless": ([{3: 1}, last], "name"),
+        "texture-name-empty": ([{1: ""}], "name"),
+        "texture-path": ([{1: "../a.png"}], "name"),
+        "texture-default-ending": ([{1: "a.png"}], "name"),
+        "texture-mime-unknown": ([{1: "a", 2: 5}], "mime"),
+        "texture-length-missing": ([{1: "a"}, last], "length"),
+        "texture-length-negative": ([{1: "a", 3: -1}, last], "length"),
+        "texture-length-of-last": ([{1: "a", 3: 1}], "keys"),
+        "texture-key-unknown": ([{1: "a", 4: 1}], "keys"),
     }
     for name, (fields, field) in textures.items():
-        yield Malformed(name, container(rows(meta({8: [fields]}))), "META", f"textures.0.{field}")
+        yield Malformed(name, container(rows(meta({8: fields}))), "META", f"textures.0.{field}")
 
 
 def _relations() -> Iterator[Malformed]:

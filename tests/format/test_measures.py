@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import pytest
 
+from nispcodec import encoder
 from nispcodec.errors import FormatError
 from nispcodec.format import canonical, measures
+from nispcodec.format.constants import PRESETS
 
 ENCODERS = {
     "preset": "balanced",
@@ -19,11 +21,15 @@ ENCODERS = {
 }
 
 
+def test_presets_are_the_encoders() -> None:
+    assert PRESETS == encoder.PRESETS
+
+
 def test_what_an_encoder_writes() -> None:
     stored = measures.encode(ENCODERS)
-    assert stored[3] == 12_900
+    assert (stored[1], stored[3]) == (1, 12_900)
     assert measures.decode(stored) == ENCODERS
-    assert len(canonical.encode("META", stored)) <= 40
+    assert len(canonical.encode("META", stored)) <= 32
 
 
 @pytest.mark.parametrize("value", [True, False, 0, -1, 2**64 - 1, "", 0.1, -4e-9, 1e300, 1e30])
@@ -36,6 +42,17 @@ def test_what_others_write(value: str | float) -> None:
 def test_known_names_with_odd_values(value: float) -> None:
     back = measures.decode(measures.encode({"uv_error_mean": value}))["uv_error_mean"]
     assert back == pytest.approx(value, rel=1e-6)
+
+
+@pytest.mark.parametrize("preset", [*PRESETS, "somebody else's"])
+def test_presets(preset: str) -> None:
+    assert measures.decode(measures.encode({"preset": preset})) == {"preset": preset}
+
+
+@pytest.mark.parametrize("preset", [0, 1, True])
+def test_a_preset_is_text(preset: object) -> None:
+    with pytest.raises(FormatError, match=r"preset: expected text"):
+        measures.encode({"preset": preset})
 
 
 @pytest.mark.parametrize("key", [0, 9, -1, True, "seed", 1.5, b"seed"])

@@ -11,7 +11,7 @@ from hypothesis import given, settings
 from nispcodec.asset import Material, Texture, TextureMap
 from nispcodec.document import ChartTable, Document, Frame
 from nispcodec.errors import FormatError
-from nispcodec.format import inspect, pack, unpack
+from nispcodec.format import inspect, metadata, pack, unpack
 from nispcodec.format.constants import CODINGS
 from nispcodec.network import NetworkSpec
 from tests.format.documents import assert_same, documents, full, network, quantised, tiny
@@ -51,7 +51,7 @@ def test_inspect_accounts_for_every_byte() -> None:
     data = pack(full())
     sections = inspect(data)
     assert [section.code for section in sections] == ["META", "NETS", "TXTR", "ZZZZ"]
-    assert sections[0].offset == 16 + 22 * len(sections)
+    assert sections[0].offset == 16 + 21 * len(sections)
     assert sections[0].offset + sum(section.stored_length for section in sections) == len(data)
     by_code = {section.code: section for section in sections}
     assert list(by_code["NETS"].parts) == ["sdf", "chart", "uv"]
@@ -60,15 +60,20 @@ def test_inspect_accounts_for_every_byte() -> None:
 
 
 def test_overhead_of_a_one_material_asset() -> None:
-    """As an encoder writes it, with what it measured."""
+    """As an encoder writes it, with what it measured: two maps under names of usual lengths."""
     charts = ChartTable(np.zeros(13, np.int32), np.ones(13, np.bool_), (-0.25, 0.125), (1.25, 0.75))
     spec = NetworkSpec((32,) * 4, 2, conditioning="embedding", charts=13, embedding=4)
     document = dataclasses.replace(
         full(),
         frame=Frame((0.0, 0.25, 0.5), 1.5),
         charts=charts,
-        materials=(Material("initialShadingGroup", maps={"base_color": TextureMap(0)}),),
-        textures=(Texture("spot_texture.png", bytes(80_000), "image/png"),),
+        materials=(
+            Material("tea_set_01", maps={"base_color": TextureMap(0), "normal": TextureMap(1)}),
+        ),
+        textures=(
+            Texture("tea_set_01_diff_1k.jpg", bytes(80_000), "image/jpeg"),
+            Texture("tea_set_01_nor_gl_1k.jpg", bytes(90_000), "image/jpeg"),
+        ),
         chart=network(NetworkSpec((32,) * 3, 13)),
         uv=network(spec),
         shell=0.0,
@@ -114,6 +119,29 @@ def test_documents_that_cannot_be_written(change: dict[str, object], field: str)
     with pytest.raises(FormatError) as caught:
         pack(dataclasses.replace(tiny(), **change))
     assert caught.value.field == field
+
+
+@pytest.mark.parametrize(
+    ("name", "stored"),
+    [
+        ("oak.png", b"\xa3oak"),
+        ("oak.jpg", b"\xa7oak.jpg"),
+        ("old.oak.png", b"\xabold.oak.png"),
+        (".png", b"\xa4.png"),
+    ],
+)
+def test_texture_names_go_without_their_usual_ending(name: str, stored: bytes) -> None:
+    texture = dataclasses.replace(full().textures[0], name=name)
+    data = metadata.encode(dataclasses.replace(full(), textures=(texture, texture)))
+    assert data.count(b"\x01" + stored) == 2
+    document = dataclasses.replace(full(), textures=(texture, full().textures[1]))
+    assert unpack(pack(document)).textures == document.textures
+
+
+def test_a_texture_name_without_ending() -> None:
+    texture = dataclasses.replace(full().textures[0], name="wood")
+    with pytest.raises(FormatError, match=r"a file name with an ending"):
+        pack(dataclasses.replace(full(), textures=(texture, texture)))
 
 
 @pytest.mark.parametrize("name", ["", ".", "..", "a/b.png", "..\\b.png", "c:b.png", "a\0.png"])

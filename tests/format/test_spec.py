@@ -28,7 +28,7 @@ DECODER = spec.decoder()
 @pytest.mark.parametrize(
     "name",
     [
-        *("PACKINGS", "NETWORKS", "CODINGS", "STEPS", "NUMBERS", "ENCODINGS", "CONDITIONINGS"),
+        *("PRESETS", "NETWORKS", "CODINGS", "STEPS", "NUMBERS", "ENCODINGS", "CONDITIONINGS"),
         *(
             "ACTIVATIONS",
             "OUTPUTS",
@@ -45,6 +45,11 @@ def test_enumerations(name: str) -> None:
     assert spec.enumeration(name) == NAMES[name]
 
 
+def test_endings() -> None:
+    rows = spec.table_after("Enumeration `MIME_TYPES`")
+    assert tuple(row[2] for row in rows) == constants.ENDINGS
+
+
 def test_caps() -> None:
     caps = {row[0].strip("`"): int(row[1]) for row in spec.table_after("## 9 Caps")}
     caps["MAX_MEMORY"] = constants.MAX_MEMORY
@@ -56,8 +61,8 @@ def test_sections_and_bits() -> None:
     rows = spec.table_after("Sections of this version")
     assert tuple(row[0] for row in rows) == constants.SECTIONS
     assert all(row[1] == "yes" for row in rows)
-    assert "bit 0 (value 1): critical" in spec.TEXT
-    assert constants.CRITICAL == 1
+    assert "bit 0 (value 1): critical; bit 1 (value 2): packed" in spec.TEXT
+    assert (constants.CRITICAL, constants.PACKED) == (1, 2)
 
 
 def test_header_and_table_layout() -> None:
@@ -129,7 +134,7 @@ def test_its_container_reader() -> None:
     for row, section in zip(DECODER["read_table"](data), inspect(data), strict=True):
         assert row[0] == section.code
         assert row[1] == section.critical
-        assert row[2] == 1 + constants.PACKINGS.index(section.packing)
+        assert row[2] == (section.packing == "zstd")
         assert len(row[3]) == section.stored_length
         assert row[4] == section.decoded_length
 

@@ -8,13 +8,13 @@ from __future__ import annotations
 import struct
 import zlib
 
-HEADER, ENTRY = 16, 22
+HEADER, ENTRY = 16, 21
 
 
 def repair(data: bytes) -> bytes:
     """The bytes with signature, section count, offsets, lengths and checksums put right.
 
-    Codes, flags, packings and payloads stay; a stored length is cut to what is left, and the last
+    Codes, flags and payloads stay; a stored length is cut to what is left, and the last
     section takes it all. A valid file comes back as it is.
     """
     count = min(data[10] if len(data) > 10 else 0, (len(data) - HEADER) // ENTRY)
@@ -23,14 +23,14 @@ def repair(data: bytes) -> bytes:
     offset = HEADER + ENTRY * count
     table = b""
     for row in range(count):
-        code, flags, packing, _, stored, decoded, _ = struct.unpack_from(
-            "<4sBBIIII", data, HEADER + ENTRY * row
+        code, flags, _, stored, decoded, _ = struct.unpack_from(
+            "<4sBIIII", data, HEADER + ENTRY * row
         )
         left = len(data) - offset
         stored = left if row == count - 1 else min(stored, left)
-        decoded = stored if packing == 1 else decoded
+        decoded = decoded if flags & 2 else stored
         checksum = zlib.crc32(data[offset : offset + stored])
-        table += struct.pack("<4sBBIIII", code, flags, packing, offset, stored, decoded, checksum)
+        table += struct.pack("<4sBIIII", code, flags, offset, stored, decoded, checksum)
         offset += stored
     start = b"\x89NSP\r\n\x1a\n" + bytes([1, data[9], count, 0])
     head = start + struct.pack("<I", zlib.crc32(start + table))
