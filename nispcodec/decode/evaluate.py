@@ -95,7 +95,7 @@ class _Forward:
         sine = self.spec.activation == "sine"
         scales = [self.spec.w0 if sine else 1.0] * len(self.spec.hidden) + [1.0]
         self.layers = [
-            np.hstack([weight, bias[:, None]]) * np.float32(scale)
+            _folded(weight, bias, np.float32(scale))
             for (weight, bias), scale in zip(network.layers, scales, strict=True)
         ]
         self.by_chart: Floats | None = None
@@ -152,7 +152,9 @@ class _Forward:
             angles = self._frequencies[:, None] * coordinates[:, None, :]
             waves = np.stack([np.sin(angles), np.cos(angles)], axis=2)
             coordinates = waves.reshape(-1, len(points))
-        return np.vstack([coordinates, np.ones((1, len(points)), np.float32)])
+        rows = np.empty((len(coordinates) + 1, len(points)), np.float32)
+        rows[:-1], rows[-1] = coordinates, 1
+        return rows
 
     def _through_encoding(self, encoded: Floats, slope: Floats) -> Floats:
         if self.spec.encoding == "identity":
@@ -192,6 +194,14 @@ class _Forward:
         if self.spec.output == "sigmoid":
             return outputs * (1 - outputs)
         return np.ones_like(outputs)
+
+
+def _folded(weight: Floats, bias: Floats, scale: np.float32) -> Floats:
+    """(out, in + 1): `[weight | bias]`, scaled."""
+    layer = np.empty((len(bias), weight.shape[1] + 1), np.float32)
+    np.multiply(weight, scale, out=layer[:, :-1])
+    np.multiply(bias, scale, out=layer[:, -1])
+    return layer
 
 
 def _in_blocks(run: Callable[[slice], None], spec: NetworkSpec, count: int) -> None:

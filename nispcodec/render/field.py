@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from functools import cached_property
-
 import numpy as np
 
 from nispcodec.asset import Material, Texture
@@ -12,7 +10,7 @@ from nispcodec.decode.model import NispModel
 from nispcodec.document import Frame
 from nispcodec.render.fragments import Cast, Floats, Fragments, Indices, Integers
 from nispcodec.render.march import March
-from nispcodec.render.space import Space, bounding_space
+from nispcodec.render.space import bounding_space
 from nispcodec.render.tangents import tangent_axes
 
 # How far from a point its UVs are asked, to see how they change (normalised frame).
@@ -28,6 +26,8 @@ class FieldScene:
 
     def __init__(self, model: NispModel) -> None:
         self.model = model
+        self.space = bounding_space(model.document.sdf)
+        self._chart_materials = self._materials_of_charts()
 
     @property
     def frame(self) -> Frame:
@@ -44,13 +44,7 @@ class FieldScene:
         """The document's."""
         return self.model.document.textures
 
-    @cached_property
-    def space(self) -> Space:
-        """Where the surface may be; found once."""
-        return bounding_space(self.model.document.sdf)
-
-    @cached_property
-    def _chart_materials(self) -> Integers:
+    def _materials_of_charts(self) -> Integers:
         """(k,) int32: the material of each chart."""
         table = self.model.document.charts
         materials = table.materials.copy()

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from threading import Lock
+
 import numpy as np
 
 from nispcodec.asset import SRGB_SLOTS, Material, Texture
@@ -15,6 +17,7 @@ class Maps:
     def __init__(self, textures: tuple[Texture, ...]) -> None:
         self._textures = textures
         self._pyramids: dict[tuple[int, bool], list[Image]] = {}
+        self._one_at_a_time = Lock()
 
     def look_up(
         self, material: Material, slot: str, points: Fragments, footprints: Floats
@@ -35,12 +38,13 @@ class Maps:
 
     def _pyramid(self, texture: int, srgb: bool) -> list[Image]:
         key = texture, srgb
-        if key not in self._pyramids:
-            image = decode_image(self._textures[texture])
-            if srgb:
-                image = np.dstack([srgb_to_linear(image[..., :3]), image[..., 3]])
-            self._pyramids[key] = _pyramid(image)
-        return self._pyramids[key]
+        with self._one_at_a_time:
+            if key not in self._pyramids:
+                image = decode_image(self._textures[texture])
+                if srgb:
+                    image = np.dstack([srgb_to_linear(image[..., :3]), image[..., 3]])
+                self._pyramids[key] = _pyramid(image)
+            return self._pyramids[key]
 
 
 def _pyramid(image: Image) -> list[Image]:

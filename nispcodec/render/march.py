@@ -52,14 +52,8 @@ class _Front:
     radius: Floats
     trend: Floats
 
-    def __getitem__(self, chosen: NDArray[np.bool_]) -> _Front:
-        return _Front(
-            number=self.number[chosen],
-            at=self.at[chosen],
-            step=self.step[chosen],
-            radius=self.radius[chosen],
-            trend=self.trend[chosen],
-        )
+    def __getitem__(self, chosen: Indices) -> _Front:
+        return _Front(*(getattr(self, field.name).take(chosen) for field in fields(self)))
 
 
 class March:
@@ -74,21 +68,24 @@ class March:
         inside: bool = False,
     ) -> None:
         self._network, self._space = network, space
-        self._origins, self._directions = origins, directions
-        self._scale = np.float32((-1 if inside else 1) / space.slope)
+        self._origins, self._directions = (
+            np.ascontiguousarray(each.T) for each in (origins, directions)
+        )
+        self._side = np.float32(-1 if inside else 1)
         self._steps = np.zeros(len(origins), np.int32)
 
     def run(self) -> Trace:
         """First crossings of the surface."""
         found: list[tuple[_Front, Floats]] = []
-        lost = np.zeros(len(self._origins), np.bool_)
+        lost = np.zeros(len(self._steps), np.bool_)
         front, leave = self._into_ball()
         for _ in range(MAX_STEPS):
             radius = self._sphere(front.number, front.at)
-            hit = (radius < 0) | ((radius < EPSILON) & ~_torn(front, radius))
-            found.append((front[hit], radius[hit]))
-            front = _stepped(front[~hit], radius[~hit])
-            front = _within(front, leave[front.number])
+            torn = _torn(front, radius)
+            hit = (radius < EPSILON) & ~torn
+            some = np.flatnonzero(hit)
+            found.append((front[some], radius.take(some)))
+            front = _within(_stepped(front, radius, torn), leave, ~hit)
             if len(front.number) == 0:
                 break
         lost[front.number] = True
@@ -96,8 +93,8 @@ class March:
 
     def _into_ball(self) -> tuple[_Front, Floats]:
         """The rays that meet the ball, where they enter it, and where each ray leaves it (n,)."""
-        along = -(self._origins * self._directions).sum(axis=1)
-        nearest = (self._origins**2).sum(axis=1) - along**2
+        along = -(self._origins * self._directions).sum(axis=0)
+        nearest = (self._origins**2).sum(axis=0) - along**2
         half = np.sqrt(np.maximum(BALL**2 - nearest, 0)).astype(np.float32)
         leave = along + half
         number = np.flatnonzero((half > 0) & (leave > 0))
@@ -107,17 +104,17 @@ class March:
     def _sphere(self, number: Indices, at: Floats) -> Floats:
         """Radii in which there is no surface round points of the rays; negative beyond it."""
         points = self._points(number, at)
-        radius = self._space.free(points)
-        asked = radius < SHORTEST
-        self._steps[number[asked]] += 1
+        radius = self._space.free(points) * self._side
+        asked = np.flatnonzero(np.abs(radius) < SHORTEST)
+        self._steps[number.take(asked)] += 1
         radius[asked] = self._field(points[asked])
         return radius
 
     def _field(self, points: Floats) -> Floats:
-        return evaluate(self._network, points)[:, 0] * self._scale
+        return evaluate(self._network, points)[:, 0] * (self._side / np.float32(self._space.slope))
 
     def _points(self, number: Indices, at: Floats) -> Floats:
-        return self._origins[number] + at[:, None] * self._directions[number]
+        return (self._origins.take(number, axis=1) + at * self._directions.take(number, axis=1)).T
 
     def _crossings(self, found: list[tuple[_Front, Floats]]) -> Floats:
         """Where the rays (n,) meet the surface: on their last point or in the step to it."""
@@ -125,12 +122,12 @@ class March:
             *(np.concatenate([getattr(each, f.name) for each, _ in found]) for f in fields(_Front))
         )
         radius = np.concatenate([each for _, each in found])
-        # What is near the surface behind a torn step may be the far side of something thin.
-        deep = (radius < -EPSILON) | _torn(front, radius)
-        through = (radius < 0) & deep & (front.step > 0)
-        distances = np.full(len(self._origins), np.inf, np.float32)
+        through = np.flatnonzero((radius < -EPSILON) & (front.step > 0))
+        distances = np.full(len(self._steps), np.inf, np.float32)
         distances[front.number] = front.at
-        distances[front.number[through]] = self._bracketed(front[through], radius[through])
+        distances[front.number.take(through)] = self._bracketed(
+            front[through], radius.take(through)
+        )
         return distances
 
     def _bracketed(self, front: _Front, beyond: Floats) -> Floats:
@@ -147,28 +144,28 @@ class March:
         return crossing
 
 
-def _within(front: _Front, leave: Floats) -> _Front:
-    """Rays whose last sphere ends before they `leave`, their steps no longer than to there.
+def _within(front: _Front, leave: Floats, going: NDArray[np.bool_]) -> _Front:
+    """Rays still `going` whose last sphere ends before they leave, steps no longer than to there.
 
     An over-relaxed step that ends beyond may have torn; only a point that is asked can tell.
     """
-    start = front.at - front.step
-    step = np.minimum(front.step, leave - start)
-    return replace(front, at=start + step, step=step)[start + front.radius < leave]
+    start, end = front.at - front.step, leave.take(front.number)
+    step = np.minimum(front.step, end - start)
+    going &= start + front.radius < end
+    return replace(front, at=start + step, step=step)[np.flatnonzero(going)]
 
 
 def _torn(front: _Front, radius: Floats) -> NDArray[np.bool_]:
     """Whether the spheres at both ends of the last step leave a gap between them."""
     torn: NDArray[np.bool_] = front.step > (
-        np.maximum(front.radius, LEAST_STEP) + np.maximum(radius, LEAST_STEP)
+        np.maximum(front.radius, LEAST_STEP) + np.maximum(np.abs(radius), LEAST_STEP)
     )
     return torn
 
 
-def _stepped(front: _Front, radius: Floats) -> _Front:
+def _stepped(front: _Front, radius: Floats, torn: NDArray[np.bool_]) -> _Front:
     """One step on; back to the edge of the sphere before where the last step tore."""
     before, here = np.maximum(front.radius, LEAST_STEP), np.maximum(radius, LEAST_STEP)
-    torn = _torn(front, radius)
     change = (radius - front.radius) / np.maximum(front.step, LEAST_STEP)
     trend = np.where(front.step > 0, front.trend + NEWEST * (change - front.trend), front.trend)
     trend = np.where(torn, np.float32(-1), np.clip(trend, -1, 0.5))

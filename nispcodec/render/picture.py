@@ -7,14 +7,15 @@ from dataclasses import dataclass, fields
 import numpy as np
 from numpy.typing import NDArray
 
+from nispcodec.decode.cores import cores, on_every_core
 from nispcodec.render.camera import Camera
 from nispcodec.render.fragments import Floats, Fragments, Integers, Scene
 from nispcodec.render.maps import Maps
 from nispcodec.render.shade import looks, shaded
 from nispcodec.texture import linear_to_srgb
 
-# Rays at a time: bounds the memory.
-BAND = 1 << 18
+# Rays at a time and core: bounds the memory. Smaller bands cost more calls than they save.
+BAND = 1 << 16
 # A pixel on an edge is the mean of this many samples, squared.
 SUBDIVISION = 3
 # Neighbouring pixels this many pixel widths apart in depth, or with normals whose cosine is less,
@@ -103,10 +104,13 @@ class Eye:
         A pixel has `samples` of them along each side: textures are filtered accordingly.
         """
         seen = Samples.nothing(len(x))
-        for start in range(0, len(x), BAND):
-            band = slice(start, start + BAND)
+
+        def see(band: slice) -> None:
             directions = self.camera.directions(x[band] / self.size, y[band] / self.size)
             self._see(directions, seen.part(band), 2 * self.camera.reach / self.size / samples)
+
+        size = max(1, min(BAND, -(-len(x) // cores())))
+        on_every_core(see, [slice(start, start + size) for start in range(0, len(x), size)])
         return seen
 
     def _see(self, directions: Floats, seen: Samples, width: float) -> None:

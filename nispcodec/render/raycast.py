@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from functools import cached_property
-
 import numpy as np
 
 from nispcodec.asset import Material, Texture, TexturedMesh
 from nispcodec.document import Frame
-from nispcodec.metrics.surface import Array, Indices, Surface, SurfacePoints, frame_of
+from nispcodec.metrics.surface import Indices, Surface, SurfacePoints, frame_of
 from nispcodec.metrics.uv import uv_at
 from nispcodec.render.fragments import Cast, Floats, Fragments
 from nispcodec.render.normals import corner_normals
@@ -25,6 +23,10 @@ class MeshScene:
         self.surface = Surface.of(mesh, self.frame)
         self._embree = EmbreeScene()
         TriangleMesh(self._embree, self.surface.positions.astype(np.float32), mesh.faces)
+        # The first ray makes Embree build its tree: rays are cast by several threads later.
+        self._embree.run(np.zeros((1, 3), np.float32), np.ones((1, 3), np.float32))
+        self._corner_normals = corner_normals(self.surface)
+        self._jacobians = face_jacobians(self.surface)
 
     @property
     def materials(self) -> tuple[Material, ...]:
@@ -65,15 +67,11 @@ class MeshScene:
             charts=np.full(len(faces), -1, np.int32),
         )
 
-    @cached_property
-    def _corner_normals(self) -> Array:
-        return corner_normals(self.surface)
 
-    @cached_property
-    def _jacobians(self) -> Floats:
-        """(m, 2, 3): how the UV of each face changes along x, y, z in its plane."""
-        corners, uvs = self.surface.corners, self.surface.mesh.corner_uvs
-        edges = corners[:, 1:] - corners[:, :1]
-        uv_edges = uvs[:, 1:] - uvs[:, :1]
-        jacobians = uv_edges.transpose(0, 2, 1) @ np.linalg.pinv(edges).transpose(0, 2, 1)
-        return np.asarray(jacobians, dtype=np.float32)
+def face_jacobians(surface: Surface) -> Floats:
+    """(m, 2, 3): how the UV of each face changes along x, y, z in its plane."""
+    corners, uvs = surface.corners, surface.mesh.corner_uvs
+    edges = corners[:, 1:] - corners[:, :1]
+    uv_edges = uvs[:, 1:] - uvs[:, :1]
+    jacobians = uv_edges.transpose(0, 2, 1) @ np.linalg.pinv(edges).transpose(0, 2, 1)
+    return np.asarray(jacobians, dtype=np.float32)

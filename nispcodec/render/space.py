@@ -32,26 +32,44 @@ CAUTION, LEAST_DOUBT = 2.0, 5e-4
 
 @dataclass(frozen=True)
 class Space:
-    """What is known of a field on a grid of (r, r, r) points over the cube [-1.02, 1.02]^3.
+    """What is known of a field over the cube [-1.02, 1.02]^3: how far its surface is, signed.
 
-    values  float32: distance to the surface, or less
-    doubt   float32: how far interpolated values may be off
-    slope   how fast the field may change near the surface: it is a distance when divided by this
+    Distances are negative inside. `above` and `below` are (r, r, r) float32, for the points of a
+    grid and to be interpolated; `cells` (r - 1, r - 1, r - 1) float32, for all points of a cell.
+
+    above  the distance or less, wherever that is positive
+    below  the distance or more, wherever that is negative
+    cells  0 near the surface; elsewhere the distance, or nearer to 0
+    slope  how fast the field may change near the surface: it is a distance when divided by this
     """
 
-    values: Floats
-    doubt: Floats
+    above: Floats
+    below: Floats
+    cells: Floats
     slope: float
 
     def free(self, points: Floats) -> Floats:
-        """(n,): no surface is nearer than this to points (n, 3); 0 or less where that is open."""
-        place = (points.T + np.float32(LIMIT)) * np.float32((len(self.values) - 1) / (2 * LIMIT))
-        value, doubt = (
-            map_coordinates(grid, place, output=np.float32, order=1, mode="nearest")
-            for grid in (self.values, self.doubt)
-        )
-        free: Floats = np.abs(value) - doubt
+        """(n,): no surface is nearer than this to points (n, 3); negative inside; 0 if unknown."""
+        count = len(self.cells)
+        place = (points.T + np.float32(LIMIT)) * np.float32(count / (2 * LIMIT))
+        x, y, z = np.clip(place, 0, count - 1).astype(np.int32)
+        free: Floats = self.cells.take((x * count + y) * count + z)
+        near = np.flatnonzero(np.abs(free) < 2 * LIMIT / count)
+        if len(near):
+            free[near] = self._interpolated(place.take(near, axis=1))
         return free
+
+    def _interpolated(self, place: Floats) -> Floats:
+        free = np.maximum(_between(self.above, place), 0)
+        within = np.flatnonzero(free == 0)
+        if len(within):
+            free[within] = np.minimum(_between(self.below, place.take(within, axis=1)), 0)
+        return free
+
+
+def _between(grid: Floats, place: Floats) -> Floats:
+    values: Floats = map_coordinates(grid, place, output=np.float32, order=1, mode="nearest")
+    return values
 
 
 def bounding_space(network: Network) -> Space:
@@ -74,13 +92,37 @@ def _remembered(network: Network, cells: Indices, middles: Floats, count: int) -
     points = np.stack(np.unravel_index(used, shape), axis=1) * (2 * LIMIT / count) - LIMIT
     field = evaluate(network, points.astype(np.float32))[:, 0]
     off = np.abs(field[inverse].reshape(corners.shape).mean(axis=1) - middles)
-    values, doubt = np.ones(shape, np.float32), np.zeros(shape, np.float32)
-    values.ravel()[used] = 0
-    # Surface is within half a cell's diagonal of such a corner.
-    values = (distance_transform_edt(values) - np.sqrt(3) / 2) * 2 * LIMIT / count
+    doubt = np.zeros(shape, np.float32)
     np.maximum.at(doubt.ravel(), corners, (CAUTION * off + LEAST_DOUBT)[:, None])
+    doubt /= np.float32(slope)
+    values = np.zeros(shape, np.float32)
     values.ravel()[used] = field / slope
-    return Space(values.astype(np.float32), doubt / np.float32(slope), slope)
+    distances, sides = _from_known(doubt > 0, values)
+    # Between points of the grid the distance may be less than interpolated, by half the diagonal.
+    empty = sides * np.maximum(distances - np.float32(np.sqrt(3) * LIMIT / count), 0)
+    values = np.where(doubt > 0, values, empty)
+    bounds = sides[:-1, :-1, :-1] * _least_of_cells(distances)
+    return Space(values - doubt, values + doubt, bounds, slope)
+
+
+def _from_known(known: NDArray[np.bool_], values: Floats) -> tuple[Floats, Floats]:
+    """How far points of the grid are from the nearest that is known, and on which side: 1 or -1.
+
+    There is no surface in between, so that both are on the same side of it.
+    """
+    nearest = distance_transform_edt(~known, return_distances=False, return_indices=True)
+    away = np.zeros(known.shape, np.float32)
+    for there, here in zip(nearest, np.ogrid[tuple(map(slice, known.shape))], strict=True):
+        away += (there - here) ** 2
+    distances = np.sqrt(away) * np.float32(2 * LIMIT / (len(known) - 1))
+    return distances, np.where(values[tuple(nearest)] < 0, np.float32(-1), np.float32(1))
+
+
+def _least_of_cells(values: Floats) -> Floats:
+    """The least value at the eight corners of each cell."""
+    values = np.minimum(values[1:], values[:-1])
+    values = np.minimum(values[:, 1:], values[:, :-1])
+    return np.minimum(values[:, :, 1:], values[:, :, :-1])
 
 
 def _crossed(network: Network, cells: Indices, count: int) -> tuple[Floats, Indices]:
