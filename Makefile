@@ -39,7 +39,7 @@ test: lint
 
 fuzz: setup
 	$(BIN)/pip install --disable-pip-version-check -q -c constraints.txt -e '.[fuzz]'
-	$(BIN)/python -m tests.fuzz.fuzz_unpack -runs=$(RUNS) -max_len=4096 -print_final_stats=1 build/corpus
+	$(BIN)/python -m tests.fuzz.fuzz_unpack -runs=$(RUNS) -max_len=4096 -rss_limit_mb=8192 -print_final_stats=1 build/corpus
 
 bench: setup
 	$(BIN)/python -m benchmarks --assets $(ASSETS)
