@@ -23,7 +23,7 @@ EPSILON = 1e-4
 LEAST_STEP = np.float32(5e-4)
 # Where less than this is known to be free, the network is asked.
 SHORTEST = np.float32(5e-4)
-MAX_STEPS = 250
+MAX_STEPS = 1000
 REFINEMENTS = 3
 # Weight of the newest step in the trend of the field along a ray.
 NEWEST = np.float32(0.3)
@@ -82,7 +82,7 @@ class March:
         for _ in range(MAX_STEPS):
             radius = self._sphere(front.number, front.at)
             torn = _torn(front, radius)
-            hit = (radius < EPSILON) & ~torn
+            hit = _met(front, radius) & ~torn
             some = np.flatnonzero(hit)
             found.append((front[some], radius.take(some)))
             front = _within(_stepped(front, radius, torn), leave, ~hit)
@@ -161,6 +161,16 @@ def _torn(front: _Front, radius: Floats) -> NDArray[np.bool_]:
         np.maximum(front.radius, LEAST_STEP) + np.maximum(np.abs(radius), LEAST_STEP)
     )
     return torn
+
+
+def _met(front: _Front, radius: Floats) -> NDArray[np.bool_]:
+    """Whether rays are through the surface, or as good as there and still nearing it.
+
+    Those that graze it are not: they might make outlines fatter.
+    """
+    nearing = (front.radius - radius) / np.maximum(front.step, LEAST_STEP)
+    met: NDArray[np.bool_] = radius < np.minimum(EPSILON, np.maximum(nearing * LEAST_STEP, 0))
+    return met
 
 
 def _stepped(front: _Front, radius: Floats, torn: NDArray[np.bool_]) -> _Front:

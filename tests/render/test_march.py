@@ -102,8 +102,22 @@ def test_what_is_far_from_the_surface_needs_no_network(ball: tuple[Network, Spac
 
 def test_the_space_never_promises_too_much(ball: tuple[Network, Space]) -> None:
     points = np.random.default_rng(0).uniform(-1, 1, (20_000, 3)).astype(np.float32)
-    room = np.abs(np.linalg.norm(points, axis=1) - 0.6)
-    assert (ball[1].free(points) <= room + 1e-3).all()
+    room = np.linalg.norm(points, axis=1) - 0.6
+    free = ball[1].free(points)
+    assert (np.abs(free) <= np.abs(room) + 1e-3).all()
+    assert (free[room > 1e-3] >= 0).all()
+    assert (free[room < -1e-3] <= 0).all()
+    assert (free[np.abs(room) > 0.1] != 0).all()
+
+
+@pytest.mark.parametrize("height", [-EPSILON / 2, EPSILON / 2])
+def test_a_ray_along_an_edge_hits_if_it_crosses_the_surface(height: float) -> None:
+    """Past the corner of an octahedron, nearer to it than epsilon on either side."""
+    network = tiny.octahedron(0.8)
+    origin = np.array([[-3.0, 0.8 + height, 0.0]], np.float32)
+    direction = np.array([[1.0, 0, 0]], np.float32)
+    found = March(network, bounding_space(network), origin, direction).run().distances
+    assert np.isfinite(found[0]) == (height < 0)
 
 
 def test_noise_of_the_field_is_no_surface() -> None:
