@@ -11,6 +11,7 @@ import torch
 from torch import Tensor
 from torch.nn import functional
 
+from nispcodec.fit.prune import Mask
 from nispcodec.fit.quantise import Quantiser, snapped
 from nispcodec.network import Network, NetworkSpec, Weights
 
@@ -22,9 +23,11 @@ class Module:
     In it each layer is one matrix [W | b], so that a preconditioner sees weight and bias together,
     and an embedding is the last matrix. Sine layers hold w0 W and w0 b, which saves a pass over the
     activations. With a quantiser it computes with rounded weights, as the file will hold them.
+    Once pruned, `kept` is 1 or 0 for each number, and what is pruned is 0 after every `hold`.
     """
 
     quantiser: Quantiser | None = None
+    kept: Tensor | None = None
 
     def __init__(self, spec: NetworkSpec, generator: torch.Generator, device: str) -> None:
         self.spec = spec
@@ -43,7 +46,8 @@ class Module:
 
     def __call__(self, points: Tensor, charts: Tensor | None = None) -> Tensor:
         """(n, 3) points, (n,) chart numbers -> (n, outputs)."""
-        used = self.weights if self.quantiser is None else self.quantiser.rounded(self.weights)
+        used = self.weights if self.kept is None else self.weights * self.kept
+        used = used if self.quantiser is None else self.quantiser.rounded(used)
         parts = _matrices(used, self.shapes)
         layers = parts[: len(self.spec.hidden) + 1]
         hidden = self._encoded(points, charts, parts[-1])
@@ -52,9 +56,24 @@ class Module:
             hidden = activation(_affine(matrix, hidden))
         return _OUTPUTS[self.spec.output](_affine(layers[-1], hidden))
 
+    def prune(self, mask: Mask) -> None:
+        """Keep what a mask keeps; the rest is 0 from now on."""
+        self.kept = torch.ones_like(self.weights, requires_grad=False)
+        parts = _matrices(self.kept, self.shapes)
+        for name, index, columns in self._named():
+            if name in mask:
+                parts[index][:, columns] = torch.from_numpy(mask[name])
+        self.hold()
+
+    @torch.no_grad()
+    def hold(self) -> None:
+        """Make what is pruned 0 again, after a move."""
+        if self.kept is not None:
+            self.weights.mul_(self.kept)
+
     def quantise(self) -> None:
         """Compute with rounded weights from now on."""
-        self.quantiser = Quantiser(self.weights, self._groups())
+        self.quantiser = Quantiser(self.weights, self._groups(), self.kept)
 
     def network(self) -> Network:
         """The weights as they are now; with a quantiser each a symbol times its tensor's step."""

@@ -11,7 +11,8 @@ import torch
 
 from nispcodec.errors import FitError
 from nispcodec.fit.task import Task
-from nispcodec.fit.train import Cancelled, train
+from nispcodec.fit.tickets import fit
+from nispcodec.fit.train import Cancelled
 from nispcodec.network import Network
 from nispcodec.progress import Listener, Progress
 
@@ -38,7 +39,7 @@ def fit_networks(
 
     with _single_core_operations(), ThreadPoolExecutor(len(tasks)) as pool:
         futures = {
-            task.name: pool.submit(train, task, seed, device, shared if turn else first, heard)
+            task.name: pool.submit(fit, task, seed, device, shared if turn else first, heard)
             for turn, task in enumerate(tasks)
         }
         try:

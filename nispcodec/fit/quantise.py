@@ -23,11 +23,14 @@ FLOOR = 1e-6
 
 
 class Quantiser:
-    """One step for each group of weights: `groups` (n,) numbers the group of each of n weights."""
+    """One step for each group of weights: `groups` (n,) numbers the group of each of n weights.
 
-    def __init__(self, weights: Tensor, groups: Tensor) -> None:
+    Weights that are pruned, with 0 in `kept` (n,), cost no bits.
+    """
+
+    def __init__(self, weights: Tensor, groups: Tensor, kept: Tensor | None = None) -> None:
         self.groups = groups
-        self.counts = torch.bincount(groups).to(weights.dtype)
+        self.counts = torch.bincount(groups, kept).to(weights.dtype).clamp(min=1.0)
         spread = 0.5 * torch.log2(self._sums(weights.detach().square()))
         first = spread - 0.5 * torch.log2(self.counts) + GAUSSIAN_BITS - FIRST_BITS
         self.log_steps = first.clamp(min=math.log2(FLOOR)).requires_grad_()

@@ -9,6 +9,7 @@ import torch
 from torch import Tensor
 
 from nispcodec.fit.module import Module
+from nispcodec.fit.prune import Pruning
 from nispcodec.mesh.samples import SampleSet
 from nispcodec.network import NetworkSpec
 
@@ -69,3 +70,4 @@ class Task:
     loss: Objective
     error: Objective
     schedule: Schedule
+    pruning: Pruning | None = None

@@ -12,6 +12,7 @@ from torch import Tensor
 
 from nispcodec.errors import FitError
 from nispcodec.fit.module import Module
+from nispcodec.fit.prune import Mask
 from nispcodec.fit.quantise import Quantiser
 from nispcodec.fit.soap import Soap
 from nispcodec.fit.task import Batch, Schedule, Task
@@ -38,16 +39,26 @@ class Cancelled(Exception):
 
 
 def train(
-    task: Task, seed: int, device: str, core: AbstractContextManager[object], listen: Listener
+    task: Task,
+    seed: int,
+    device: str,
+    core: AbstractContextManager[object],
+    listen: Listener,
+    mask: Mask | None = None,
 ) -> Network:
     """Fit one network; `core` is held while computing, so that tasks share the cores fairly.
+
+    What a `mask` prunes is 0 from the first step to the last; initial weights depend on the seed.
 
     A run whose held-out error explodes goes on from its best weights at half the rate. With a
     price of bits the network computes with rounded weights from `QUANTISED` of the steps on, learns
     its steps until `HARD`, and then settles on them.
     Raises FitError when lower rates do not help.
     """
-    return _Run(task, seed, device, listen).fit(core)
+    run = _Run(task, seed, device, listen)
+    if mask is not None:
+        run.module.prune(mask)
+    return run.fit(core)
 
 
 class _Run:
@@ -96,6 +107,7 @@ class _Run:
             self._charge(self.module.quantiser, learn=step < _at(HARD, schedule))
         self._clip()
         self.move(self.rate * _shape(schedule, step))
+        self.module.hold()
 
     def _harden(self) -> None:
         """Begin a stage whose weights are not comparable with those before."""
