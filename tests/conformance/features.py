@@ -191,6 +191,8 @@ def _materials() -> Iterator[tuple[str, bytes]]:
     yield "image-jpeg", pack(textured(image=texture("a.jpg", "image/jpeg", opaque, quality=90)))
     webp = texture("a.webp", "image/webp", pixels(8, 8), lossless=True)
     yield "image-webp", pack(textured(image=webp))
+    avif = texture("a.avif", "image/avif", opaque, quality=90)
+    yield "image-avif", pack(textured(image=avif))
     grey = texture("grey.png", "image/png", pixels(6, 3)[..., 0])
     yield "image-grey", pack(textured(image=grey))
     tinted = Material("tinted", (0.8, 0.5, 0.2, 0.5), maps={"base_color": TextureMap(0)})

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import dataclasses
+import struct
+import zlib
 
 import pytest
 
@@ -10,6 +12,7 @@ from nispcodec.asset import Texture
 from nispcodec.errors import MeshError
 from nispcodec.format import pack
 from nispcodec.format.verify import verify
+from nispcodec.texture import decode_image
 from tests.format.documents import full, tiny
 
 PNG = b"\x89PNG\r\n\x1a\n and so on"
@@ -47,6 +50,16 @@ def test_every_type_is_known_by_its_first_bytes(mime: str, data: bytes) -> None:
     assert verify(with_image(data, mime), decodes) == []
     problems = verify(with_image(PNG, mime), decodes)
     assert [(each.section, each.field) for each in problems] == [("TXTR", "a.png")] * 2
+
+
+def test_an_image_bomb_is_refused_by_its_header() -> None:
+    chunks = (b"IHDR" + struct.pack(">II5B", 60_000, 60_000, 8, 2, 0, 0, 0), b"IDAT")
+    bomb = PNG[:8]
+    for chunk in chunks:
+        bomb += struct.pack(">I", len(chunk) - 4) + chunk + struct.pack(">I", zlib.crc32(chunk))
+    problems = verify(with_image(bomb), decode_image)
+    assert [(each.section, each.field) for each in problems] == [("TXTR", "a.png")] * 2
+    assert "3600000000 pixels" in str(problems[0].found)
 
 
 def test_images_that_do_not_decode() -> None:
