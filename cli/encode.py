@@ -10,6 +10,7 @@ import click
 
 from .files import output_option
 from .progress import duration, encode_progress
+from .pruning import pruning_options
 from .report import print_group, print_json, rate
 
 if TYPE_CHECKING:
@@ -32,6 +33,7 @@ IMAGE_FORMATS = ("webp", "avif", "jpeg")
 @click.option("--unwrap", is_flag=True, help="Make new UVs with xatlas (drops the textures).")
 @click.option("--texture-format", type=click.Choice(IMAGE_FORMATS), help="Re-encode the images.")
 @click.option("--texture-quality", type=click.IntRange(1, 100), default=90, show_default=True)
+@pruning_options
 @click.option("--no-textures", is_flag=True, help="Leave the images out.")
 @click.option("--quiet", is_flag=True, help="No progress.")
 @click.option("--json", "as_json", is_flag=True, help="The report as JSON.")
@@ -48,6 +50,7 @@ def command(
 
     \b
     Example: nisp encode model.obj -o model.nisp
+             nisp encode model.obj -o model.nisp --prune smallest --prune-rate sdf=0.3,uv=0.5
     """
     import nispcodec
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
@@ -17,6 +17,7 @@ from nispcodec.progress import Listener, Progress, silent
 
 if TYPE_CHECKING:
     from nispcodec.decode.model import NispModel
+    from nispcodec.fit.prune import Pruning
     from nispcodec.mesh.samples import Sampler
     from nispcodec.mesh.training import TrainingSets
 
@@ -42,6 +43,9 @@ class EncodeConfig:
     texture_format  None keeps the image files as they are; "webp", "avif", "jpeg" re-encode them
     texture_quality 1 to 100, for a `texture_format`
     textures        False leaves the images out
+    prune           None, "smallest", "smallest_global" or "large_final": lottery tickets
+    prune_rate      share of weights to prune, 0 to below 1; or by network: {"sdf": 0.3, "uv": 0.5}
+    prune_rounds    in which the rate is reached: each takes as long as an encode
     """
 
     preset: str = "balanced"
@@ -51,12 +55,22 @@ class EncodeConfig:
     texture_format: str | None = None
     texture_quality: int = 90
     textures: bool = True
+    prune: str | None = None
+    prune_rate: float | Mapping[str, float] = 0.5
+    prune_rounds: int = 2
 
     def __post_init__(self) -> None:
         if self.preset not in PRESETS:
             raise NispError(f"preset: expected one of {', '.join(PRESETS)}, found {self.preset!r}")
         if self.seed < 0 or self.threads < 0:
             raise NispError("seed and threads: expected 0 or more")
+        self.prunings()
+
+    def prunings(self) -> dict[str, Pruning]:
+        """The pruning of every network that is to be pruned, by its name."""
+        from nispcodec.fit.prune import prunings
+
+        return prunings(self.prune, self.prune_rate, self.prune_rounds) if self.prune else {}
 
 
 def encode(
@@ -119,7 +133,11 @@ def _fit(
     from nispcodec.fit.parallel import fit_networks, resolve_device
     from nispcodec.fit.presets import tasks_for
 
-    tasks = tasks_for(config.preset, sampler, sets)
+    prunings = config.prunings()
+    tasks = [
+        replace(task, pruning=prunings.get(task.name))
+        for task in tasks_for(config.preset, sampler, sets)
+    ]
     threads = config.threads or os.cpu_count() or 1
     device = resolve_device(config.device)
     return fit_networks(tasks, config.seed, device, threads, progress)

@@ -10,8 +10,9 @@ import pytest
 
 import nispcodec
 from nispcodec import EncodeConfig, NispError, TexturedMesh
+from nispcodec.encoder import PRESETS
 from nispcodec.fit import presets
-from nispcodec.format import pack
+from nispcodec.format import pack, unpack
 from nispcodec.mesh import training
 from nispcodec.mesh.procedural import sample_asset
 from tests.mesh.shapes import box_asset, cube, soup
@@ -35,6 +36,15 @@ def test_an_asset_with_charts_and_materials() -> None:
     assert document.materials == box_asset().materials
     assert document.frame.radius == pytest.approx(np.sqrt(3))
     assert 0 <= float(document.info["distance_error"]) < 0.5
+
+
+@pytest.mark.parametrize("preset", PRESETS)
+def test_a_pruned_network_has_zeros_in_the_file(preset: str) -> None:
+    how = EncodeConfig(preset, prune="smallest", prune_rate={"chart": 0.6, "uv": 0.3})
+    document = unpack(pack(nispcodec.encode(box_asset(), how).document))
+    for name, rate in (("sdf", 0.0), ("chart", 0.6), ("uv", 0.3)):
+        matrix = document.networks[name].tensors["weight.1"]
+        assert rate - 0.01 <= (matrix == 0).mean() < rate + 0.2
 
 
 def test_a_mesh_without_uv_is_geometry_alone() -> None:

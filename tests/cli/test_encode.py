@@ -56,6 +56,46 @@ def test_encode_writes_and_reports(encoder, mesh: Path, tmp_path: Path) -> None:
     assert "diverged at step 11" in result.stderr
 
 
+@pytest.mark.parametrize(
+    ("rate", "expected"),
+    [("0.3", 0.3), ("sdf=0.5,uv=.25", {"sdf": 0.5, "uv": 0.25}), ("chart=0", {"chart": 0.0})],
+)
+def test_pruning_is_asked_for(encoder, mesh: Path, tmp_path: Path, rate: str, expected) -> None:
+    seen = encoder(tiny.document())
+    options = ["--prune", "large_final", "--prune-rate", rate, "--prune-rounds", 3, "--quiet"]
+    result = nisp("encode", mesh, "-o", tmp_path / "out.nisp", *options)
+    assert result.exit_code == 0, result.output
+    config = seen["config"]
+    assert (config.prune, config.prune_rate, config.prune_rounds) == ("large_final", expected, 3)
+
+
+@pytest.mark.parametrize(
+    ("rate", "said"),
+    [
+        ("80%", "expected 0.5 or sdf=0.5,chart=0.6,uv=0.4, found '80%'"),
+        ("80", "prune rate of sdf: expected 0 to below 1, found 80"),
+        ("sdf=0.5=0.6", "found 'sdf=0.5=0.6'"),
+        ("uv=0.4,colour=0.3", "expected sdf, chart, uv, found 'colour'"),
+    ],
+)
+def test_a_rate_that_makes_no_sense(
+    encoder, mesh: Path, tmp_path: Path, rate: str, said: str
+) -> None:
+    seen = encoder(tiny.document())
+    out = tmp_path / "out.nisp"
+    result = nisp("encode", mesh, "-o", out, "--prune", "smallest", "--prune-rate", rate)
+    assert result.exit_code == 2
+    assert said in result.stderr
+    assert seen == {}
+
+
+def test_a_rate_needs_a_strategy(encoder, mesh: Path, tmp_path: Path) -> None:
+    encoder(tiny.document())
+    result = nisp("encode", mesh, "-o", tmp_path / "out.nisp", "--prune-rate", "0.5")
+    assert result.exit_code == 2
+    assert "--prune-rate needs --prune" in result.stderr
+
+
 def test_encode_report_for_people(encoder, mesh: Path, tmp_path: Path) -> None:
     encoder(tiny.document())
     result = nisp("encode", mesh, "-o", tmp_path / "out.nisp")
