@@ -69,6 +69,11 @@ class Camera:
         rays = np.column_stack([across, -down, -np.ones(len(x))]) @ self.axes
         return (rays / np.linalg.norm(rays, axis=1, keepdims=True)).astype(np.float32)
 
+    def places(self, points: NDArray[np.floating]) -> NDArray[np.float64]:
+        """Where points (n, 3) before the camera are in the picture (n, 2): see `directions`."""
+        right, up, backward = self.axes @ (points - self.eye).T
+        return 0.5 + 0.5 * np.column_stack([right, -up]) / (-backward * self.reach)[:, None]
+
 
 def view(text: str, fov: float = 32.0) -> Camera:
     """The camera of "front", "back", "left", "right", "top", "bottom" or "azimuth,elevation"."""

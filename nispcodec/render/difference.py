@@ -33,10 +33,22 @@ def heat(values: Floats) -> Floats:
 def close_ups(
     scene: Scene, views: list[Camera], differences: list[Floats], count: int
 ) -> list[Camera]:
-    """Cameras on the places of largest difference, no two of them in the same view."""
+    """Cameras on the places of largest difference, each well away from the others."""
     smooth = [uniform_filter(each, max(3, round(WINDOW * len(each)))) for each in differences]
-    worst = sorted(range(len(views)), key=lambda i: -float(smooth[i].max()))[:count]
-    return [_on(scene, views[i], smooth[i]) for i in worst]
+    cameras: list[Camera] = []
+    for _ in range(count):
+        worst = max(range(len(views)), key=lambda i: float(smooth[i].max()))
+        cameras.append(_on(scene, views[worst], smooth[worst]))
+        for view, each in zip(views, smooth, strict=True):
+            _pass_over(each, view, cameras[-1].target)
+    return cameras
+
+
+def _pass_over(smooth: Floats, view: Camera, target: tuple[float, float, float]) -> None:
+    """Forget what a close-up of the target shows, and as much around it, whatever the view."""
+    middle = view.places(np.array([target]))[0, ::-1]
+    low, high = (np.clip((middle + side / ZOOM) * len(smooth), 0, None) for side in (-1, 1))
+    smooth[int(low[0]) : int(high[0]), int(low[1]) : int(high[1])] = 0
 
 
 def _on(scene: Scene, view: Camera, smooth: Floats) -> Camera:

@@ -52,3 +52,10 @@ def test_zoom_narrows_the_picture() -> None:
     near, far = Camera(zoom=4), Camera()
     assert near.reach == pytest.approx(far.reach / 4)
     np.testing.assert_array_equal(near.eye, far.eye)
+
+
+def test_places_are_where_directions_go() -> None:
+    camera = Camera(50, -20, target=(0.1, 0.2, 0.0), zoom=3)
+    x, y = np.array([0.2, 0.9]), np.array([0.4, 0.1])
+    points = camera.eye + 2.5 * camera.directions(x, y)
+    np.testing.assert_allclose(camera.places(points), np.column_stack([x, y]), atol=1e-5)

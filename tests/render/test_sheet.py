@@ -68,3 +68,16 @@ def test_close_ups_look_at_the_largest_difference() -> None:
     towards = np.asarray(found.target) - views[2].eye
     wanted = views[2].directions(np.array([42 / 64]), np.array([22 / 64]))[0]
     np.testing.assert_allclose(towards / np.linalg.norm(towards), wanted, atol=0.02)
+
+
+def test_close_ups_do_not_look_at_one_place_twice() -> None:
+    views = turntable(2)
+    differences = [np.zeros((64, 64), np.float32) for _ in views]
+    # The top of the ball in both views; less of a difference at its foot.
+    for view, each in zip(views, differences, strict=True):
+        (across, down) = (64 * view.places(np.array([[0, 0.9, 0]]))[0]).astype(int)
+        each[down - 2 : down + 2, across - 2 : across + 2] = 1
+    differences[0][50:54, 30:34] = 0.5
+    first, second = close_ups(scene_of(BALL), views, differences, 2)
+    assert first.target[1] > 0.8
+    assert second.target[1] < 0
