@@ -1,11 +1,13 @@
 """The paper's comparisons: UV by chart against UV without charts and against a network of colours.
 
-    python -m benchmarks.paper_pictures ../shared/assets/spot/spot.obj --model spot.nisp
+    python -m benchmarks.paper_pictures --models DIR --assets ../shared/assets [--only spot]
 
-Two networks are fitted to the asset, with the schedule of the preset's UV network: "unconditioned",
-from a point to its UV with no chart to tell; and "colour" (OverfitColor), from a point to the base
-colour, of as many weights as the model's chart and UV networks have together. Neither is quantised.
-Writes the JSON and one picture, unlit: original, ours, unconditioned, colour.
+DIR holds NAME.nisp for the assets NAME. Two networks are fitted to each asset, with the schedule of
+the UV network of the model's preset: "unconditioned", from a point to its UV with no chart to tell;
+and "colour" (OverfitColor), from a point to the base colour, of as many weights as the model's
+chart and UV networks have together. Neither is quantised. Writes the JSON and, for each asset, one
+picture, unlit: original, ours, unconditioned, colour. Results are kept asset by asset; one that has
+a result for the same bytes is not measured again.
 """
 
 from __future__ import annotations
@@ -13,8 +15,8 @@ from __future__ import annotations
 import json
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from hashlib import sha256
 from pathlib import Path
-from typing import Any
 
 import click
 import numpy as np
@@ -22,9 +24,11 @@ from torch import Tensor
 
 import nispcodec
 from benchmarks.machine import commit, machine, versions
+from benchmarks.target import Record, Target
 from nispcodec.asset import TexturedMesh
 from nispcodec.decode.evaluate import evaluate
 from nispcodec.decode.model import NispModel
+from nispcodec.encoder import GAP
 from nispcodec.fit.module import Module
 from nispcodec.fit.parallel import fit_networks
 from nispcodec.fit.presets import tasks_for
@@ -47,7 +51,13 @@ from nispcodec.render.images import image_bytes
 from nispcodec.render.views import scene_of
 
 RESULTS = Path("benchmarks/results/paper_pictures.json")
+PAINTERS = ("ours", "unconditioned", "colour")
 POINTS, VIEWS, SIZE = 100_000, 4, 320
+
+TARGETS = [
+    Target("colour: dB above OverfitColor", ("gains", "colour"), 0, at_least=True),
+    Target("colour: dB above no charts", ("gains", "unconditioned"), 0, at_least=True),
+]
 
 Painter = Callable[[Floats], Floats]
 """Points (n, 3), normalised frame -> base colours (n, 3), sRGB-encoded."""
@@ -60,9 +70,10 @@ def target_error(module: Module, batch: Batch) -> Tensor:
 
 def baselines(mesh: TexturedMesh, model: NispModel, seed: int, threads: int) -> dict[str, Network]:
     """The networks "unconditioned" and "colour", fitted."""
-    sampler = Sampler(mesh, seed, gap=0.1)
+    sampler = Sampler(mesh, seed, gap=GAP)
     sets = training_sets(sampler)
-    (uv,) = [each for each in tasks_for("balanced", sampler, sets) if each.name == "uv"]
+    preset = str(model.document.info.get("preset", "balanced"))
+    (uv,) = [each for each in tasks_for(preset, sampler, sets) if each.name == "uv"]
     surface = Surface.of(mesh, sampler.frame)
     plain = replace(uv.spec, conditioning="none", charts=0, embedding=0)
     tasks = [
@@ -145,7 +156,7 @@ def sight(scene: Scene, camera: Camera) -> Sight:
 
 def compared(
     mesh: TexturedMesh, model: NispModel, networks: dict[str, Network]
-) -> tuple[dict[str, Any], Floats]:
+) -> tuple[Record, Floats]:
     """The numbers, and the picture of all four side by side."""
     surface = Surface.of(mesh, model.document.frame)
     free = without_charts(model, networks["unconditioned"])
@@ -161,7 +172,7 @@ def compared(
     scene = scene_of(model)
     sights = [sight(scene, camera) for camera in turntable(VIEWS)]
     truth = [each.painted(original) for each in sights]
-    numbers: dict[str, Any] = {}
+    numbers: Record = {}
     columns = [truth[0]]
     for name, paint in painters.items():
         off = np.clip(paint(places), 0, 1).astype(np.float64) - wanted
@@ -187,32 +198,63 @@ def _decoded(model: NispModel) -> Surface:
     return Surface.of(model.to_mesh(), model.document.frame)
 
 
+def measure(path: Path, source: Path, seed: int, threads: int) -> tuple[Record, Floats]:
+    """Everything about one asset, and the picture."""
+    mesh, model = load_mesh(source), nispcodec.load(path)
+    if not set(_UV) <= set(model.document.networks):
+        raise click.UsageError(f"{path}: expected charts and UVs")
+    networks = baselines(mesh, model, seed, threads)
+    numbers, drawn = compared(mesh, model, networks)
+    ours = numbers["ours"]["color_psnr"]
+    record = {
+        "commit": commit(),
+        "model": sha256(path.read_bytes()).hexdigest(),
+        "charts": len(model.document.charts),
+        "weights": {name: each.spec.weight_count for name, each in networks.items()},
+        "gains": {name: ours - numbers[name]["color_psnr"] for name in networks},
+        **numbers,
+    }
+    return record, drawn
+
+
 @click.command()
-@click.argument("source", type=click.Path(path_type=Path, exists=True))
-@click.option("--model", type=click.Path(path_type=Path, exists=True), required=True)
+@click.option("--models", type=click.Path(path_type=Path, exists=True), required=True)
+@click.option("--assets", type=click.Path(path_type=Path, exists=True), required=True)
+@click.option("--only", multiple=True, help="An asset; may be repeated.")
 @click.option("--seed", type=click.IntRange(0), default=0, show_default=True)
 @click.option("--threads", type=click.IntRange(1), default=2, show_default=True)
 @click.option("-o", "--output", type=click.Path(path_type=Path), default=RESULTS, show_default=True)
-def main(source: Path, model: Path, seed: int, threads: int, output: Path) -> None:
-    """Compare on SOURCE, add the numbers to the JSON, and write the picture beside it."""
-    mesh, loaded = load_mesh(source), nispcodec.load(model)
-    if not set(_UV) <= set(loaded.document.networks):
-        raise click.UsageError(f"{model}: expected charts and UVs")
-    networks = baselines(mesh, loaded, seed, threads)
-    numbers, drawn = compared(mesh, loaded, networks)
-    known = json.loads(output.read_text())["assets"] if output.exists() else {}
-    known[source.stem] = {
-        "commit": commit(),
-        "weights": {name: each.spec.weight_count for name, each in networks.items()},
-        **numbers,
-    }
-    everything = {"machine": machine(), "versions": versions(), "assets": known}
-    output.parent.mkdir(parents=True, exist_ok=True)
-    write_atomic(output, json.dumps(everything, indent=1).encode() + b"\n")
-    write_atomic(
-        output.with_name(f"paper_pictures_{source.stem}.webp"), image_bytes([drawn], ".webp")
-    )
-    click.echo(json.dumps(known[source.stem], indent=1))
+def main(
+    models: Path, assets: Path, only: tuple[str, ...], seed: int, threads: int, output: Path
+) -> None:
+    """Compare every NAME.nisp in MODELS and print asked against measured."""
+    records: Record = json.loads(output.read_text())["assets"] if output.exists() else {}
+    for path in sorted(models.glob("*.nisp")):
+        name, digest = path.stem, sha256(path.read_bytes()).hexdigest()
+        if (only and name not in only) or records.get(name, {}).get("model") == digest:
+            continue
+        click.echo(f"{name} ...", err=True)
+        records[name], drawn = measure(path, assets / name / f"{name}.obj", seed, threads)
+        everything = {"machine": machine(), "versions": versions(), "assets": records}
+        output.parent.mkdir(parents=True, exist_ok=True)
+        picture = output.with_name(f"{output.stem}_{name}.webp")
+        write_atomic(picture, image_bytes([drawn], ".webp"))
+        write_atomic(output, json.dumps(everything, indent=1).encode() + b"\n")
+    for name, record in sorted(records.items()):
+        click.echo(_told_of(name, record))
+
+
+def _told_of(name: str, record: Record) -> str:
+    """An asset's lines of the table."""
+    lines = []
+    for painter in PAINTERS:
+        psnr, color = record[painter]["picture_psnr"], record[painter]["color_psnr"]
+        lines.append(f"{name:<18}{painter:<16}colour {color:.2f} dB, pictures {psnr:.2f} dB")
+    for kind, each in record["distortion"].items():
+        values = ", ".join(f"{key} {value:.4g}" for key, value in each.items())
+        lines.append(f"{name:<18}{kind:<16}distortion {values}")
+    asked = TARGETS if record["charts"] > 1 else []
+    return "\n".join([*lines, *(each.line(name, record) for each in asked)])
 
 
 if __name__ == "__main__":

@@ -15,10 +15,9 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
 from nispcodec.decode.evaluate import gradient
-from nispcodec.decode.extract import LIMIT, Surface
+from nispcodec.decode.extract import LIMIT, OUTSIDE, Surface
 from nispcodec.network import Network
 
-OUTSIDE = 1.01
 # Slopes are relative to the whole surface's. Noise between the samples was seen at 3 to 7. Flat
 # pieces are mostly scraps of real detail that the fit could not hold: only specks are dropped.
 STEEP, SMALL_SHARE = 1.7, 0.05

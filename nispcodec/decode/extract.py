@@ -18,6 +18,8 @@ from nispcodec.decode.newton import onto_surface
 from nispcodec.network import Network
 
 LIMIT = 1.02
+# Nothing of the asset is outside of this ball.
+OUTSIDE = 1.01
 BLOCK = 4
 ROOT = 16
 NEWTON_STEPS = 2

@@ -12,8 +12,8 @@ from dataclasses import dataclass, fields, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from nispcodec.decode.components import OUTSIDE
 from nispcodec.decode.evaluate import evaluate
+from nispcodec.decode.extract import OUTSIDE
 from nispcodec.network import Network
 from nispcodec.render.fragments import Floats, Indices, Integers
 from nispcodec.render.space import Space

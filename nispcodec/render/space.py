@@ -13,11 +13,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import distance_transform_edt, label, map_coordinates
-from scipy.spatial import KDTree
 
-from nispcodec.decode.components import OUTSIDE, spurious
 from nispcodec.decode.evaluate import evaluate, gradient
-from nispcodec.decode.extract import LIMIT, extract
+from nispcodec.decode.extract import LIMIT, OUTSIDE, extract
 from nispcodec.network import Network
 from nispcodec.render.fragments import Floats, Indices
 
@@ -149,6 +147,11 @@ def _is_surface(network: Network, cells: Indices, count: int) -> NDArray[np.bool
     marked[tuple(cells[inside].T)] = True
     if label(marked, np.ones((3, 3, 3)))[1] < 2:
         return inside
+    # Slow to import, and seldom needed.
+    from scipy.spatial import KDTree
+
+    from nispcodec.decode.components import spurious
+
     surface = extract(network, NOISE_RESOLUTION)
     unwanted, labels = spurious(network, surface)
     if not unwanted.any():
