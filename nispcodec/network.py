@@ -39,6 +39,8 @@ class NetworkSpec:
     hidden       widths of the hidden layers
     activation   "sine": sin(w0 (W x + b)); "relu": max(0, W x + b)
     output       activation of the last layer
+    mirror       bit 0, 1, 2: of x, y, z the absolute value enters, before any encoding, so that the
+                 network holds one half and its answers are symmetric about the plane
     """
 
     hidden: tuple[int, ...]
@@ -51,6 +53,7 @@ class NetworkSpec:
     activation: str = "sine"
     w0: float = 30.0
     output: str = "identity"
+    mirror: int = 0
 
     def __post_init__(self) -> None:
         _member("encoding", self.encoding, ENCODINGS)
@@ -68,6 +71,12 @@ class NetworkSpec:
         _within("embedding", self.embedding, int(embedded), 64 if embedded else 0)
         if not 0 < self.w0 <= 1000:
             raise FormatError("network", "w0", "a number in (0, 1000]", self.w0)
+        _within("mirror", self.mirror, 0, 7)
+
+    @property
+    def mirrored(self) -> tuple[bool, bool, bool]:
+        """Of which of x, y, z the absolute value enters."""
+        return bool(self.mirror & 1), bool(self.mirror & 2), bool(self.mirror & 4)
 
     @property
     def inputs(self) -> int:

@@ -74,7 +74,8 @@ def contrast(network: Network, points: Floats, first: Charts, second: Charts) ->
 def gradient(network: Network, points: Floats) -> tuple[Floats, Floats]:
     """Values and analytic gradients of a network with one output and no conditioning.
 
-    points (n, 3) float32, normalised frame -> values (n,), gradients (n, 3), both float32.
+    points (n, 3) float32, normalised frame -> values (n,), gradients (n, 3), both float32. On the
+    plane of a mirror the gradient lies in it: the mean of those on either side.
     """
     values = np.empty(len(points), np.float32)
     gradients = np.empty((len(points), 3), np.float32)
@@ -104,6 +105,7 @@ class _Forward:
             first, width = self.layers[0], self.spec.embedding
             self.by_chart = first[:, -1 - width : -1] @ network.tensors["embedding"].T
             self.layers[0] = np.hstack([first[:, : -1 - width], first[:, -1:]])
+        self.mirrored = np.array(self.spec.mirrored)[:, None]
         self._own = local()
 
     def __call__(self, points: Floats, charts: Charts | None) -> Floats:
@@ -141,10 +143,15 @@ class _Forward:
         slope = self.layers[-1][:, :-1].T * self._output_slope(value)
         for layer, steep in zip(reversed(self.layers[:-1]), reversed(slopes), strict=True):
             slope = layer[:, :-1].T @ (slope * steep)
-        return value[0], self._through_encoding(encoded[:-1], slope).T
+        slope = self._through_encoding(encoded[:-1], slope)
+        if self.spec.mirror:
+            slope = np.where(self.mirrored, slope * np.sign(points.T), slope)
+        return value[0], slope.T
 
     def _input(self, points: Floats, charts: Charts | None) -> Floats:
         coordinates = points.T
+        if self.spec.mirror:
+            coordinates = np.where(self.mirrored, np.abs(coordinates), coordinates)
         if self.spec.conditioning == "scalar" and charts is not None:
             scalar = (2 * charts + 1).astype(np.float32) / np.float32(self.spec.charts) - 1
             coordinates = np.vstack([coordinates, scalar.astype(np.float32)])

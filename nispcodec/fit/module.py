@@ -114,6 +114,9 @@ class Module:
 
     def _encoded(self, points: Tensor, charts: Tensor | None, table: Tensor) -> Tensor:
         spec = self.spec
+        if spec.mirror:
+            mirrored = torch.tensor(spec.mirrored, device=points.device)
+            points = torch.where(mirrored, points.abs(), points)
         if spec.conditioning == "scalar" and charts is not None:
             scalar = (2 * charts[:, None] + 1) / spec.charts - 1
             points = torch.cat([points, scalar.to(points.dtype)], dim=1)

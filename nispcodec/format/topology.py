@@ -43,6 +43,7 @@ def _fields(path: str, spec: NetworkSpec) -> dict[int, Any]:
             6: (number(META, f"{path}.activation", spec.activation, ACTIVATIONS), 1),
             7: (float(spec.w0), 30.0),
             8: (number(META, f"{path}.output", spec.output, OUTPUTS), 1),
+            9: (spec.mirror, 0),
         }
     )
 
@@ -60,6 +61,7 @@ def _read(record: Record, name: str, charts: int) -> NetworkSpec:
     activation = record.member(6, "activation", ACTIVATIONS)
     w0 = record.take(7, "w0", float, 30.0)
     output = record.member(8, "output", OUTPUTS)
+    mirror = record.take(9, "mirror", int, 0)
     with located(META, record.path):
         spec = NetworkSpec(
             hidden=tuple(hidden),
@@ -72,6 +74,7 @@ def _read(record: Record, name: str, charts: int) -> NetworkSpec:
             activation=activation,
             w0=w0,
             output=output,
+            mirror=mirror,
         )
     record.finish()
     return spec

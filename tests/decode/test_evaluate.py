@@ -27,6 +27,10 @@ SPECS = {
     "embedding fourier": NetworkSpec(
         (8,), 2, encoding="fourier", levels=2, conditioning="embedding", charts=5, embedding=3
     ),
+    "mirror": NetworkSpec((8, 8), 1, w0=2.0, mirror=0b101),
+    "mirror scalar fourier": NetworkSpec(
+        (8,), 2, encoding="fourier", levels=2, conditioning="scalar", charts=7, mirror=0b110
+    ),
 }
 
 BLOCK = block_size(SPECS["siren"])
@@ -34,7 +38,8 @@ BLOCK = block_size(SPECS["siren"])
 
 def by_hand(network: Network, point: np.ndarray, chart: int) -> list[float]:
     spec = network.spec
-    coordinates = [float(p) for p in point]
+    mirrored = [spec.mirror >> axis & 1 for axis in range(3)]
+    coordinates = [abs(float(p)) if m else float(p) for p, m in zip(point, mirrored, strict=True)]
     if spec.conditioning == "scalar":
         coordinates.append((2 * chart + 1) / spec.charts - 1)
     values = coordinates
@@ -83,7 +88,10 @@ def test_any_number_of_points(count: int) -> None:
 @pytest.mark.parametrize("activation", ["sine", "relu"])
 @pytest.mark.parametrize("encoding", ["identity", "fourier"])
 @pytest.mark.parametrize("output", ["identity", "tanh", "sigmoid"])
-def test_gradient_is_the_slope_of_the_values(activation: str, encoding: str, output: str) -> None:
+@pytest.mark.parametrize("mirror", [0, 0b001, 0b110])
+def test_gradient_is_the_slope_of_the_values(
+    activation: str, encoding: str, output: str, mirror: int
+) -> None:
     spec = NetworkSpec(
         (12, 12, 12),
         1,
@@ -92,6 +100,7 @@ def test_gradient_is_the_slope_of_the_values(activation: str, encoding: str, out
         activation=activation,
         w0=2.0,
         output=output,
+        mirror=mirror,
     )
     network = tiny.random_network(spec, seed=5)
     points = np.random.default_rng(2).uniform(-1, 1, (200, 3)).astype(np.float32)
@@ -104,6 +113,28 @@ def test_gradient_is_the_slope_of_the_values(activation: str, encoding: str, out
         error = np.abs(rise[:, 0] / (2 * step) - slopes[:, axis])
         # A ReLU's kink between the two samples spoils the difference quotient, not the slope.
         assert np.quantile(error, 0.9) < 5e-3
+
+
+@pytest.mark.parametrize("mirror", range(1, 8))
+def test_a_mirror_makes_values_symmetric_and_gradients_antisymmetric(mirror: int) -> None:
+    network = tiny.random_network(NetworkSpec((8, 8), 1, w0=2.0, mirror=mirror))
+    points = np.random.default_rng(3).uniform(-1, 1, (40, 3)).astype(np.float32)
+    values, slopes = gradient(network, points)
+    for axis in range(3):
+        signs = np.where(np.arange(3) == axis, -1, 1).astype(np.float32)
+        other, turned = gradient(network, points * signs)
+        symmetric = bool(mirror >> axis & 1)
+        assert np.array_equal(other, values) == symmetric
+        assert np.array_equal(turned, slopes * signs) == symmetric
+
+
+def test_on_the_plane_of_a_mirror_the_gradient_lies_in_it() -> None:
+    network = tiny.random_network(NetworkSpec((8, 8), 1, w0=2.0, mirror=0b001))
+    point = np.array([[0.0, 0.3, -0.2], [-0.0, 0.3, -0.2]], np.float32)
+    beside = gradient(network, point + np.float32([[1e-6, 0, 0], [-1e-6, 0, 0]]))[1]
+    slopes = gradient(network, point)[1]
+    assert (slopes[:, 0] == 0).all()
+    assert slopes == pytest.approx(np.tile(beside.mean(axis=0), (2, 1)), abs=1e-5)
 
 
 def test_threads_may_ask_at_once_and_blas_keeps_its_threads() -> None:
