@@ -15,6 +15,9 @@ from nispcodec.fit.prune import Mask
 from nispcodec.fit.quantise import Quantiser, snapped
 from nispcodec.network import Network, NetworkSpec, Weights
 
+LAST = 0.3
+"""Learning rate of a SIREN's last layer: its bias moves the whole field at once."""
+
 
 class Module:
     """A network under training.
@@ -24,25 +27,36 @@ class Module:
     and an embedding is the last matrix. Sine layers hold w0 W and w0 b, which saves a pass over the
     activations. With a quantiser it computes with rounded weights, as the file will hold them.
     Once pruned, `kept` is 1 or 0 for each number, and what is pruned is 0 after every `hold`.
+    `band` scales the frequencies that it starts with.
     """
 
     quantiser: Quantiser | None = None
     kept: Tensor | None = None
 
-    def __init__(self, spec: NetworkSpec, generator: torch.Generator, device: str) -> None:
+    def __init__(
+        self, spec: NetworkSpec, generator: torch.Generator, device: str, band: float = 1.0
+    ) -> None:
         self.spec = spec
         matrices = _initial_matrices(spec, generator)
+        matrices[0] *= band
         table = torch.randn(spec.charts, max(spec.embedding, 1), generator=generator)
         parts = [*matrices, table] if spec.embedding else matrices
         self.shapes = [(part.shape[0], part.shape[1]) for part in parts]
         self.weights = torch.cat([part.flatten() for part in parts]).to(device).requires_grad_()
 
     @property
+    def scales(self) -> list[float]:
+        """What each matrix is a multiple of: w0 for sine layers."""
+        sine = self.spec.w0 if self.spec.activation == "sine" else 1.0
+        return [sine] * len(self.spec.hidden) + [1.0] * (1 + (self.spec.embedding > 0))
+
+    @property
     def rates(self) -> list[float]:
         """Learning rate of each matrix relative to the schedule's."""
-        sine = self.spec.w0 if self.spec.activation == "sine" else 1.0
-        rates = [sine] * len(self.spec.hidden) + [1.0]
-        return [*rates, 1.0] if self.spec.embedding else rates
+        rates = self.scales
+        if _is_siren(self.spec):
+            rates[len(self.spec.hidden)] = LAST
+        return rates
 
     def __call__(self, points: Tensor, charts: Tensor | None = None) -> Tensor:
         """(n, 3) points, (n,) chart numbers -> (n, outputs)."""
@@ -81,12 +95,12 @@ class Module:
         steps: dict[str, float] = {}
         parts = _matrices(self.weights.detach(), self.shapes)
         for group, (name, index, columns) in enumerate(self._named()):
-            values, rate = parts[index][:, columns], self.rates[index]
+            values, scale = parts[index][:, columns], self.scales[index]
             if self.quantiser is None:
-                tensors[name] = _array(values / rate)
+                tensors[name] = _array(values / scale)
                 continue
             step = self.quantiser.steps[group]
-            steps[name] = snapped(step.item() / rate)
+            steps[name] = snapped(step.item() / scale)
             tensors[name] = _array((values / step).round()) * np.float32(steps[name])
         order = self.spec.shapes
         return Network(self.spec, {name: tensors[name] for name in order}, steps)
@@ -94,7 +108,7 @@ class Module:
     def settle(self) -> None:
         """Hold the steps of the quantiser to those that a file can hold."""
         if self.quantiser is not None:
-            self.quantiser.settle([self.rates[index] for _, index, _ in self._named()])
+            self.quantiser.settle([self.scales[index] for _, index, _ in self._named()])
 
     def _named(self) -> Iterator[tuple[str, int, slice | int]]:
         """Name, matrix and columns of every tensor, as they follow each other in the vector."""
@@ -156,9 +170,13 @@ def _initial_matrices(spec: NetworkSpec, generator: torch.Generator) -> list[Ten
     return matrices
 
 
+def _is_siren(spec: NetworkSpec) -> bool:
+    return spec.activation == "sine" and spec.w0 != 1.0
+
+
 def _weight_bound(spec: NetworkSpec, layer: int, fan_in: int) -> float:
     """SIREN's initialisation; He-uniform where w0 is 1 (the paper) and for relu."""
-    if spec.activation == "relu" or spec.w0 == 1.0:
+    if not _is_siren(spec):
         return math.sqrt(6 / fan_in)
     if layer == 0:
         return spec.w0 / fan_in

@@ -49,11 +49,11 @@ class Quantiser:
         return apply(weights, self.log_steps, self.groups)
 
     @torch.no_grad()
-    def settle(self, rates: list[float]) -> None:
-        """Take the nearest steps that the file holds in one byte, after division by `rates`."""
-        for group, rate in enumerate(rates):
+    def settle(self, scales: list[float]) -> None:
+        """Take the nearest steps that the file holds in one byte, after division by `scales`."""
+        for group, scale in enumerate(scales):
             step = float(torch.exp2(self.log_steps[group]))
-            self.log_steps[group] = math.log2(snapped(step / rate) * rate)
+            self.log_steps[group] = math.log2(snapped(step / scale) * scale)
 
     @torch.no_grad()
     def charge(self, weights: Tensor, price: float) -> None:

@@ -49,7 +49,8 @@ class Schedule:
 
     `optimiser` is "soap" (rate warmed up, then a cosine down to a hundredth) or "adam" (rate held,
     as the paper does). `price`: by what share of the loss one bit a weight less may raise it; 0
-    leaves the weights float32.
+    leaves the weights float32. `band`: frequencies that the first layer starts with, relative to
+    SIREN's.
     """
 
     steps: int
@@ -57,6 +58,7 @@ class Schedule:
     rate: float = 1e-3
     optimiser: str = "soap"
     price: float = 0.0
+    band: float = 1.0
 
 
 @dataclass(frozen=True)

@@ -66,7 +66,7 @@ class _Run:
         self.task = task
         self.listen = listen
         self.generator = torch.Generator().manual_seed(seed)
-        self.module = Module(task.spec, self.generator, device)
+        self.module = Module(task.spec, self.generator, device, task.schedule.band)
         self.held_out = Batch.of(task.held_out, device)
         self.batches = _batches(Batch.of(task.samples, device), task.schedule, self.generator)
         self.rate = task.schedule.rate

@@ -51,8 +51,8 @@ def module_of(network: Network) -> Module:
     module = Module(network.spec, torch.Generator(), "cpu")
     layers = [np.concatenate([weight, bias[:, None]], axis=1) for weight, bias in network.layers]
     table = [network.tensors["embedding"]] if network.spec.embedding else []
-    scaled = zip([*layers, *table], module.rates, strict=True)
-    vector = np.concatenate([(part * rate).ravel() for part, rate in scaled])
+    scaled = zip([*layers, *table], module.scales, strict=True)
+    vector = np.concatenate([(part * scale).ravel() for part, scale in scaled])
     module.weights.data = torch.from_numpy(vector.astype(np.float32))
     return module
 
