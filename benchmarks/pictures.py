@@ -153,8 +153,9 @@ def main(models: Path, assets: Path, only: tuple[str, ...], output: Path) -> Non
         output.parent.mkdir(parents=True, exist_ok=True)
         write_atomic(output, json.dumps(everything | {"assets": records}, indent=1).encode())
     for name, record in sorted(records.items()):
-        likeliness = ", ".join(f"{key} {value:.4g}" for key, value in record["pictures"].items())
-        click.echo(f"{name:<18}{likeliness}")
+        for part in ("pictures", "silhouette"):
+            values = ", ".join(f"{key} {value:.4g}" for key, value in record[part].items())
+            click.echo(f"{name:<18}{part}: {values}")
         for target in targets(name):
             click.echo(target.line(name, record))
 
