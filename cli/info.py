@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import compress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -111,6 +112,8 @@ def _network(network: Network) -> dict[str, Any]:
     }
     if spec.conditioning != "none":
         facts["conditioning"] = spec.conditioning
+    if spec.mirror:
+        facts["mirror"] = "".join(compress("xyz", spec.mirrored))
     return facts
 
 

@@ -138,6 +138,7 @@ def _topologies() -> Iterator[tuple[str, bytes]]:
         "w0": network((16, 8), 1, 5, w0=12.5),
         "sigmoid": network((16,), 1, 6, output="sigmoid"),
         "deep": network((6,) * 8, 1, 7),
+        "mirror": network((9, 8), 1, 13, mirror=0b101),
     }
     for name, sdf in sdfs.items():
         yield f"topology-{name}", pack(dataclasses.replace(plain(), sdf=sdf))
@@ -145,6 +146,7 @@ def _topologies() -> Iterator[tuple[str, bytes]]:
         "none": {},
         "scalar": {"conditioning": "scalar", "charts": 2},
         "scalar-fourier": {"conditioning": "scalar", "charts": 2, **fourier, "output": "sigmoid"},
+        "scalar-mirror": {"conditioning": "scalar", "charts": 2, **fourier, "mirror": 0b010},
         "embedding": {"conditioning": "embedding", "charts": 2, "embedding": 4},
     }
     for name, options in uvs.items():

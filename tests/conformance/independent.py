@@ -102,6 +102,7 @@ def topology(fields: dict[int, Any]) -> dict[str, Any]:
         "activation": NUMBERED["ACTIVATIONS"][fields.get(6, 1) - 1],
         "w0": fields.get(7, 30.0),
         "output": NUMBERED["OUTPUTS"][fields.get(8, 1) - 1],
+        "mirror": fields.get(9, 0),
     }
 
 

@@ -242,7 +242,11 @@ _SPECS: dict[str, tuple[dict[int, Any], str]] = {
     "w0-zero": ({1: [2], 7: 0.0}, "w0"),
     "w0-large": ({1: [2], 7: 1001.0}, "w0"),
     "output-unknown": ({1: [2], 8: 4}, "output"),
-    "spec-key-unknown": ({1: [2], 9: 1}, "keys"),
+    "mirror-default": ({1: [2], 9: 0}, "mirror"),
+    "mirror-bit-unknown": ({1: [2], 9: 8}, "mirror"),
+    "mirror-negative": ({1: [2], 9: -1}, "mirror"),
+    "mirror-flag": ({1: [2], 9: True}, "mirror"),
+    "spec-key-unknown": ({1: [2], 10: 1}, "keys"),
 }
 
 

@@ -165,8 +165,9 @@ def matrices(made: network.Network) -> list[tuple[int, int]]:
         {"conditioning": "scalar", "charts": 5, "output": "sigmoid", "w0": 4.0},
         {"conditioning": "scalar", "charts": 5, "encoding": "fourier", "levels": 2},
         {"conditioning": "embedding", "charts": 5, "embedding": 3},
+        {"conditioning": "scalar", "charts": 5, "encoding": "fourier", "levels": 2, "mirror": 5},
     ],
-    ids=["plain", "fourier", "scalar", "both", "embedding"],
+    ids=["plain", "fourier", "scalar", "both", "embedding", "mirror"],
 )
 def test_its_evaluator(options: dict[str, object]) -> None:
     made = random_network(network.NetworkSpec((8, 7), 2, **options), scale=0.1)  # type: ignore[arg-type]
