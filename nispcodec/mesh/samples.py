@@ -31,6 +31,9 @@ OPENING_SHARE = 5e-4
 MUCH_HIDDEN = 0.05
 """From this share of hidden area on, an opening would show that what was inside is gone."""
 
+FULL = 0.95
+"""UVs that fill so much of the unit square in both directions stay as they are: no map to store."""
+
 MEMBRANE_JITTER = 5e-3
 """How far off a membrane (normalised frame) a network may put it."""
 
@@ -158,12 +161,7 @@ class Sampler:
             )
 
     def _surface(self, count: int) -> tuple[FloatArray, NDArray[np.int64]]:
-        """Points (count, 3) uniform by area, and the pieces they lie on."""
-        pieces = self.solid.pieces
-        weight = area(pieces)
-        piece = self._random.choice(len(pieces), size=count, p=weight / weight.sum())
-        weights = random_barycentric(self._random, count)
-        return np.einsum("nc,ncx->nx", weights, pieces[piece]), piece
+        return uniform_surface(self._random, self.solid.pieces, count)
 
     def _merged(self, gap: float) -> Charts:
         """Merge far charts, told by random points and one point of each piece of small charts."""
@@ -194,11 +192,16 @@ def normalising_frame(mesh: TexturedMesh) -> Frame:
 
 
 def chart_table(mesh: TexturedMesh, charts: Charts) -> ChartTable:
-    """The chart table, with the affine map that brings the used UVs to [0, 1]^2."""
+    """The chart table, with the affine map that brings the used UVs to [0, 1]^2.
+
+    The identity where they lie within the unit square and all but fill it: it takes no bytes.
+    """
     used = mesh.corner_uvs[mesh.has_uv].reshape(-1, 2)
     if not len(used):
         return ChartTable(charts.materials, charts.has_uv)
     low, high = used.min(axis=0), used.max(axis=0)
+    if low.min() >= 0 and high.max() <= 1 and (high - low).min() >= FULL:
+        return ChartTable(charts.materials, charts.has_uv)
     scale = np.where(high > low, high - low, 1.0)
     return ChartTable(
         charts.materials,
@@ -226,6 +229,16 @@ def random_barycentric(random: np.random.Generator, count: int) -> FloatArray:
     root = np.sqrt(random.random(count))
     second = random.random(count)
     return np.stack([1 - root, root * (1 - second), root * second], axis=1)
+
+
+def uniform_surface(
+    random: np.random.Generator, pieces: Triangles, count: int
+) -> tuple[FloatArray, NDArray[np.int64]]:
+    """Points (count, 3) uniform by area on pieces (p, 3, 3), and the pieces they lie on."""
+    weight = area(pieces)
+    piece = random.choice(len(pieces), size=count, p=weight / weight.sum())
+    weights = random_barycentric(random, count)
+    return np.einsum("nc,ncx->nx", weights, pieces[piece]), piece
 
 
 def uniform_ball(random: np.random.Generator, count: int) -> FloatArray:

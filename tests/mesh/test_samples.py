@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from nispcodec.mesh.samples import BETA, CUBE, Sampler, barycentric, normalising_frame
-from tests.mesh.shapes import box_asset, hemisphere, soup
+from tests.mesh.shapes import box_asset, cube, hemisphere, soup
 
 
 def test_the_frame_is_centred_and_of_radius_one() -> None:
@@ -43,6 +43,25 @@ def test_every_uv_target_is_in_the_unit_square() -> None:
     uv = sampler.surface(2000).uv
     assert uv.min() >= 0
     assert uv.max() <= 1
+
+
+@pytest.mark.parametrize(
+    ("low", "high", "offset", "scale"),
+    [
+        (0.0, 1.0, 0.0, 1.0),
+        (0.02, 0.98, 0.0, 1.0),
+        (0.1, 0.9, 0.1, 0.8),
+        (-0.01, 0.99, -0.01, 1.0),
+        (0.01, 1.01, 0.01, 1.0),
+    ],
+)
+def test_uvs_that_fill_the_unit_square_need_no_map(
+    low: float, high: float, offset: float, scale: float
+) -> None:
+    triangles = cube((0, 0, 0), 1.0)
+    table = Sampler(soup(triangles, low + (high - low) * triangles[..., :2]), seed=0).table
+    assert table.uv_offset == pytest.approx((offset, offset))
+    assert table.uv_scale == pytest.approx((scale, scale))
 
 
 def test_the_same_seed_gives_the_same_samples_and_another_other_ones() -> None:
