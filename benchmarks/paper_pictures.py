@@ -31,11 +31,11 @@ from nispcodec.decode.model import NispModel
 from nispcodec.encoder import GAP
 from nispcodec.fit.module import Module
 from nispcodec.fit.parallel import fit_networks
-from nispcodec.fit.presets import tasks_for
-from nispcodec.fit.task import Batch, Task
+from nispcodec.fit.presets import BATCHES, EFFORTS, RATE, SHARES, paper_tasks, steps_in
+from nispcodec.fit.task import Batch, Schedule, Task
 from nispcodec.mesh.load import load_mesh
 from nispcodec.mesh.samples import Sampler, SampleSet
-from nispcodec.mesh.training import training_sets
+from nispcodec.mesh.training import TrainingSets, training_sets
 from nispcodec.metrics.color import color_at
 from nispcodec.metrics.parameterisation import distortion_summary
 from nispcodec.metrics.pictures import compare_pictures
@@ -71,20 +71,18 @@ def target_error(module: Module, batch: Batch) -> Tensor:
 def baselines(mesh: TexturedMesh, model: NispModel, seed: int, threads: int) -> dict[str, Network]:
     """The networks "unconditioned" and "colour", fitted."""
     sampler = Sampler(mesh, seed, gap=GAP)
-    sets = training_sets(sampler)
-    preset = str(model.document.info.get("preset", "balanced"))
-    (uv,) = [each for each in tasks_for(preset, sampler, sets) if each.name == "uv"]
-    surface = Surface.of(mesh, sampler.frame)
-    plain = replace(uv.spec, conditioning="none", charts=0, embedding=0)
+    sets, surface = training_sets(sampler), Surface.of(mesh, sampler.frame)
+    specs = {name: model.document.networks[name].spec for name in _UV}
+    plain = replace(specs["uv"], conditioning="none", charts=0, embedding=0)
+    as_large = _of_size(sum(spec.weight_count for spec in specs.values()))
+    colored = _coloured(sets.skin, surface), _coloured(sets.held_skin, surface)
+    schedule = _schedule(model, sets)
     tasks = [
-        _without_charts(uv, "unconditioned", plain, sets.skin, sets.held_skin),
-        _without_charts(
-            uv,
-            "colour",
-            _of_size(sum(model.document.networks[name].spec.weight_count for name in _UV)),
-            _coloured(sets.skin, surface),
-            _coloured(sets.held_skin, surface),
-        ),
+        Task(name, spec, *samples, target_error, target_error, schedule)
+        for name, spec, samples in (
+            ("unconditioned", plain, (sets.skin, sets.held_skin)),
+            ("colour", as_large, colored),
+        )
     ]
     return fit_networks(tasks, seed, "cpu", threads, _told)
 
@@ -92,11 +90,14 @@ def baselines(mesh: TexturedMesh, model: NispModel, seed: int, threads: int) -> 
 _UV = ("chart", "uv")
 
 
-def _without_charts(
-    uv: Task, name: str, spec: NetworkSpec, samples: SampleSet, held_out: SampleSet
-) -> Task:
-    schedule = replace(uv.schedule, price=0.0)
-    return Task(name, spec, samples, held_out, target_error, target_error, schedule)
+def _schedule(model: NispModel, sets: TrainingSets) -> Schedule:
+    """How the preset of the model fits its UV network, but for the price of bits."""
+    preset = str(model.document.info.get("preset", "balanced"))
+    if preset == "paper":
+        tasks = paper_tasks(len(model.document.charts), sets)
+        return next(task.schedule for task in tasks if task.name == "uv")
+    seconds, spec = EFFORTS[preset].seconds * SHARES["uv"], model.document.networks["uv"].spec
+    return Schedule(steps_in(seconds, spec, BATCHES["uv"]), BATCHES["uv"], RATE)
 
 
 def _of_size(weights: int) -> NetworkSpec:
