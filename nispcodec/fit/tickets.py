@@ -10,6 +10,7 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import AbstractContextManager
 from dataclasses import replace
 
+from nispcodec.errors import FitError
 from nispcodec.fit.prune import STRATEGIES, Mask, everything
 from nispcodec.fit.task import Task
 from nispcodec.fit.train import train
@@ -23,6 +24,7 @@ def fit(
     """`train`, in as many rounds as the task's pruning has, and one more before any is pruned.
 
     Only the last round rounds the weights: how large they are tells more before.
+    Raises FitError when nothing is left of a matrix, which would leave a constant.
     """
     if task.pruning is None:
         return train(task, seed, device, core, listen)
@@ -30,6 +32,12 @@ def fit(
     heard = _rounds(listen, len(rates) + 1)
 
     def trained(mask: Mask, rate: float) -> Network:
+        for name, kept in mask.items():
+            if not kept.any():
+                raise FitError(
+                    f"{task.name} network: nothing is left of {name}: expected a lower prune rate "
+                    f"than {rates[-1]:g}, or another strategy than smallest_global"
+                )
         price = task.schedule.price if rate == rates[-1] else 0.0
         this = replace(task, schedule=replace(task.schedule, price=price))
         return train(this, seed, device, core, next(heard), mask)

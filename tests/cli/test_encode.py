@@ -4,13 +4,14 @@ import json
 from pathlib import Path
 
 import pytest
-from nispcodec_cli import encode
+from nispcodec_cli import encode, pruning
 from nispcodec_cli.progress import Bars, Lines, described, duration
 
 import nispcodec
 from nispcodec.decode.model import NispModel
 from nispcodec.encoder import PRESETS
 from nispcodec.errors import FitError
+from nispcodec.fit.prune import STRATEGIES
 from nispcodec.progress import Progress
 from tests import tiny
 from tests.cli.conftest import nisp
@@ -87,6 +88,10 @@ def test_a_rate_that_makes_no_sense(
     assert result.exit_code == 2
     assert said in result.stderr
     assert seen == {}
+
+
+def test_every_strategy_is_offered() -> None:
+    assert tuple(STRATEGIES) == pruning.STRATEGIES
 
 
 def test_a_rate_needs_a_strategy(encoder, mesh: Path, tmp_path: Path) -> None:

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 import torch
 
-from nispcodec.errors import NispError
+from nispcodec.errors import FitError, NispError
 from nispcodec.fit.module import Module
 from nispcodec.fit.prune import (
     NETWORKS,
@@ -193,6 +193,13 @@ def test_a_ticket_is_judged_by_the_round_before_or_the_first(strategy: str) -> N
     judged = made[0 if strategy == "large_final" else 1][2].tensors
     expected = STRATEGIES[strategy](judged, made[1][1], 0.7)
     assert all(np.array_equal(made[2][1][name], expected[name]) for name in expected)
+
+
+def test_a_network_that_would_be_a_constant_is_an_error() -> None:
+    pruning = Pruning("smallest_global", 0.995, 1)
+    task = replace(sdf_task(), schedule=Schedule(2, 64), pruning=pruning)
+    with pytest.raises(FitError, match=r"sdf network: nothing is left of weight.*lower prune rate"):
+        fit(task, 0, "cpu", threading.Lock(), silent)
 
 
 def test_rounds_are_told_and_only_the_last_is_quantised() -> None:
