@@ -8,6 +8,8 @@ import pytest
 
 from nispcodec.mesh.charts import split_charts
 from nispcodec.mesh.load import load_mesh
+from nispcodec.mesh.mirror import mirrored_axes
+from nispcodec.mesh.samples import Sampler
 
 ASSETS = Path(__file__).resolve().parents[3] / "shared" / "assets"
 
@@ -42,3 +44,19 @@ def test_real_asset(name: str):
     assert mesh.has_uv.all()
     originals = {image.read_bytes() for image in path.parent.iterdir()}
     assert {texture.data for texture in mesh.textures} <= originals
+
+
+@pytest.mark.parametrize(
+    ("name", "axes"),
+    [
+        ("spot", (True, False, False)),
+        ("exploding_barrel", (True, False, False)),
+        ("chess_king", (True, False, True)),
+        ("boombox", (False, False, False)),
+    ],
+)
+def test_symmetry_of_real_assets(name: str, axes: tuple[bool, bool, bool]) -> None:
+    path = ASSETS / name / f"{name}.obj"
+    if not path.exists():
+        pytest.skip(f"no asset {path}")
+    assert mirrored_axes(Sampler(load_mesh(path), seed=0)) == axes
