@@ -47,7 +47,7 @@ SEEDS = 2
 RATES = (0.3, 0.5, 0.7)
 PRICES = (0.005, 0.03, 0.15)
 BOTH = 0.03
-STEPS, BATCH = 1200, 1024
+STEPS, BATCH = 1000, 1024
 SAMPLER_SEED = 0
 
 Record = dict[str, Any]
