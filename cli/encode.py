@@ -12,19 +12,38 @@ from .files import output_option
 from .progress import duration, encode_progress
 from .pruning import pruning_options
 from .report import print_group, print_json, rate
+from .sizes import parsed_size
 
 if TYPE_CHECKING:
     from nispcodec.asset import TexturedMesh
     from nispcodec.decode.model import NispModel
 
-PRESETS = ("balanced", "paper")
+PRESETS = ("balanced", "paper", "fast", "best")
 IMAGE_FORMATS = ("webp", "avif", "jpeg")
 
 
 @click.command("encode", short_help="Fit networks to a mesh and write a .nisp file.")
 @click.argument("mesh", type=click.Path(path_type=Path))
 @output_option(".nisp")
-@click.option("--preset", type=click.Choice(PRESETS), default="balanced", show_default=True)
+@click.option(
+    "--preset",
+    type=click.Choice(PRESETS),
+    default="balanced",
+    show_default=True,
+    help="About 30 s: fast, 2 min: balanced, 10 min: best, on two cores.",
+)
+@click.option(
+    "--target-size",
+    callback=parsed_size,
+    metavar="SIZE",
+    help="Of the file without its textures, such as 20kB.",
+)
+@click.option(
+    "--target-error",
+    type=float,
+    metavar="ERROR",
+    help="Mean distance to the surface, such as 5e-4 (of the asset's radius).",
+)
 @click.option(
     "--seed", type=click.IntRange(0), default=0, show_default=True, help="Of everything random."
 )
@@ -50,6 +69,7 @@ def command(
 
     \b
     Example: nisp encode model.obj -o model.nisp
+             nisp encode model.obj -o model.nisp --preset best --target-size 12kB
              nisp encode model.obj -o model.nisp --prune smallest --prune-rate sdf=0.3,uv=0.5
     """
     import nispcodec

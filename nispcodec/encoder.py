@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import math
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
@@ -18,10 +19,11 @@ from nispcodec.progress import Listener, Progress, silent
 if TYPE_CHECKING:
     from nispcodec.decode.model import NispModel
     from nispcodec.fit.prune import Pruning
+    from nispcodec.fit.task import Task
     from nispcodec.mesh.samples import Sampler
     from nispcodec.mesh.training import TrainingSets
 
-PRESETS = ("balanced", "paper")
+PRESETS = ("balanced", "paper", "fast", "best")
 GAP = 0.1
 """Charts some times further apart than this (normalised frame) share numbers; not in `paper`."""
 
@@ -43,6 +45,8 @@ class EncodeConfig:
     texture_format  None keeps the image files as they are; "webp", "avif", "jpeg" re-encode them
     texture_quality 1 to 100, for a `texture_format`
     textures        False leaves the images out
+    target_size     bytes of the file without its textures; the networks are made to fit
+    target_error    mean distance to the surface (normalised frame); the SDF is made to fit
     prune           None, "smallest", "smallest_global" or "large_final": lottery tickets
     prune_rate      share of weights to prune, 0 to below 1; or by network: {"sdf": 0.3, "uv": 0.5}
     prune_rounds    in which the rate is reached: each takes as long as an encode
@@ -55,6 +59,8 @@ class EncodeConfig:
     texture_format: str | None = None
     texture_quality: int = 90
     textures: bool = True
+    target_size: float | None = None
+    target_error: float | None = None
     prune: str | None = None
     prune_rate: float | Mapping[str, float] = 0.5
     prune_rounds: int = 2
@@ -64,6 +70,11 @@ class EncodeConfig:
             raise NispError(f"preset: expected one of {', '.join(PRESETS)}, found {self.preset!r}")
         if self.seed < 0 or self.threads < 0:
             raise NispError("seed and threads: expected 0 or more")
+        targets = [each for each in (self.target_size, self.target_error) if each is not None]
+        if len(targets) > 1 or (targets and self.preset == "paper"):
+            raise NispError("target size, target error, preset paper: expected one of them")
+        if any(not 0 < each < math.inf for each in targets):
+            raise NispError(f"target size or error: expected more than 0, found {targets[0]:g}")
         self.prunings()
 
     def prunings(self) -> dict[str, Pruning]:
@@ -86,18 +97,21 @@ def encode(
     config = config or EncodeConfig()
     materials, textures = _appearance(mesh, config)
     sampler, sets = _sample(mesh, config, progress)
-    networks = _fit(sampler, sets, config, progress)
-    document = Document(
-        frame=_short_frame(sampler.frame),
-        charts=_short_map(sampler.table),
-        materials=materials,
-        textures=textures,
-        sdf=networks["sdf"],
-        chart=networks.get("chart"),
-        uv=networks.get("uv"),
-        shell=_shell(sampler),
-    )
-    return NispModel(replace(document, info=_measured(document, sampler, sets, config)))
+
+    def document(networks: Mapping[str, Network]) -> Document:
+        return Document(
+            frame=_short_frame(sampler.frame),
+            charts=_short_map(sampler.table),
+            materials=materials,
+            textures=textures,
+            sdf=networks["sdf"],
+            chart=networks.get("chart"),
+            uv=networks.get("uv"),
+            shell=_shell(sampler),
+        )
+
+    done = document(_fit(sampler, sets, config, document, progress))
+    return NispModel(replace(done, info=_measured(done, sampler, sets, config)))
 
 
 def _appearance(
@@ -127,20 +141,41 @@ def _sample(
 
 
 def _fit(
-    sampler: Sampler, sets: TrainingSets, config: EncodeConfig, progress: Listener
-) -> dict[str, Network]:
+    sampler: Sampler,
+    sets: TrainingSets,
+    config: EncodeConfig,
+    document: Callable[[Mapping[str, Network]], Document],
+    progress: Listener,
+) -> Mapping[str, Network]:
+    """The networks: the published ones, or sine networks as large as the target asks."""
     progress(Progress(stage="fit"))
-    from nispcodec.fit.parallel import fit_networks, resolve_device
-    from nispcodec.fit.presets import tasks_for
+    from nispcodec.fit.presets import EFFORTS, Problem, paper_tasks
+    from nispcodec.targets import Fitting, fit_to_error, fit_to_size, fit_with_preset
 
-    prunings = config.prunings()
-    tasks = [
-        replace(task, pruning=prunings.get(task.name))
-        for task in tasks_for(config.preset, sampler, sets)
-    ]
+    problem, fit = Problem.of(sampler, sets), _fitter(config)
+    if config.preset == "paper":
+        tasks = paper_tasks(problem.charts, sets)
+        return fit([task for task in tasks if task.name in problem.networks], progress)
+    fitting = Fitting(problem, EFFORTS[config.preset], fit, progress)
+    if config.target_error is not None:
+        return fit_to_error(fitting, config.target_error)
+    if config.target_size is not None:
+        return fit_to_size(fitting, config.target_size, document)
+    return fit_with_preset(fitting)
+
+
+def _fitter(config: EncodeConfig) -> Callable[[list[Task], Listener], dict[str, Network]]:
+    """What fits tasks as the configuration says: pruned, seeded, on a device, on so many cores."""
+    from nispcodec.fit.parallel import fit_networks, resolve_device
+
+    prunings, device = config.prunings(), resolve_device(config.device)
     threads = config.threads or os.cpu_count() or 1
-    device = resolve_device(config.device)
-    return fit_networks(tasks, config.seed, device, threads, progress)
+
+    def fit(tasks: list[Task], listen: Listener) -> dict[str, Network]:
+        pruned = [replace(task, pruning=prunings.get(task.name)) for task in tasks]
+        return fit_networks(pruned, config.seed, device, threads, listen)
+
+    return fit
 
 
 def _short_frame(frame: Frame) -> Frame:

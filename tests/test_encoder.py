@@ -12,6 +12,7 @@ import nispcodec
 from nispcodec import EncodeConfig, NispError, TexturedMesh
 from nispcodec.encoder import PRESETS
 from nispcodec.fit import presets
+from nispcodec.fit.presets import Effort
 from nispcodec.format import pack, unpack
 from nispcodec.mesh import training
 from nispcodec.mesh.procedural import sample_asset
@@ -20,7 +21,8 @@ from tests.mesh.shapes import box_asset, cube, soup
 
 @pytest.fixture(autouse=True)
 def short(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(presets, "STEPS", dict.fromkeys(presets.STEPS, 60))
+    monkeypatch.setattr(presets, "EFFORTS", dict.fromkeys(presets.EFFORTS, Effort(0.2, 0.6)))
+    monkeypatch.setattr(presets, "PROBE_STEPS", dict.fromkeys(presets.PROBE_STEPS, 30))
     monkeypatch.setattr(presets, "PAPER_STEPS", 60)
     for name in ("NEAR", "TIGHT", "CUBE", "SKIN", "HELD_OUT", "PAPER"):
         monkeypatch.setattr(training, f"{name}_COUNT", 3000)

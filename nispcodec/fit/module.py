@@ -12,11 +12,8 @@ from torch import Tensor
 from torch.nn import functional
 
 from nispcodec.fit.prune import Mask
-from nispcodec.fit.quantise import Quantiser, snapped
+from nispcodec.fit.quantise import FIRST_BITS, Quantiser, snapped
 from nispcodec.network import Network, NetworkSpec, Weights
-
-LAST = 0.3
-"""Learning rate of a SIREN's last layer: its bias moves the whole field at once."""
 
 
 class Module:
@@ -50,12 +47,10 @@ class Module:
         sine = self.spec.w0 if self.spec.activation == "sine" else 1.0
         return [sine] * len(self.spec.hidden) + [1.0] * (1 + (self.spec.embedding > 0))
 
-    @property
-    def rates(self) -> list[float]:
-        """Learning rate of each matrix relative to the schedule's."""
+    def rates(self, last: float) -> list[float]:
+        """Learning rate of each matrix relative to the schedule's; `last` is the last layer's."""
         rates = self.scales
-        if _is_siren(self.spec):
-            rates[len(self.spec.hidden)] = LAST
+        rates[len(self.spec.hidden)] = last
         return rates
 
     def __call__(self, points: Tensor, charts: Tensor | None = None) -> Tensor:
@@ -85,9 +80,9 @@ class Module:
         if self.kept is not None:
             self.weights.mul_(self.kept)
 
-    def quantise(self) -> None:
-        """Compute with rounded weights from now on."""
-        self.quantiser = Quantiser(self.weights, self._groups(), self.kept)
+    def quantise(self, bits: float = FIRST_BITS) -> None:
+        """Compute with rounded weights from now on, at first of about so many bits each."""
+        self.quantiser = Quantiser(self.weights, self._groups(), self.kept, bits)
 
     def network(self) -> Network:
         """The weights as they are now; with a quantiser each a symbol times its tensor's step."""
@@ -170,13 +165,9 @@ def _initial_matrices(spec: NetworkSpec, generator: torch.Generator) -> list[Ten
     return matrices
 
 
-def _is_siren(spec: NetworkSpec) -> bool:
-    return spec.activation == "sine" and spec.w0 != 1.0
-
-
 def _weight_bound(spec: NetworkSpec, layer: int, fan_in: int) -> float:
     """SIREN's initialisation; He-uniform where w0 is 1 (the paper) and for relu."""
-    if not _is_siren(spec):
+    if spec.activation == "relu" or spec.w0 == 1.0:
         return math.sqrt(6 / fan_in)
     if layer == 0:
         return spec.w0 / fan_in

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
 from nispcodec.fit.losses import (
     chart_error,
     chart_loss,
@@ -10,68 +13,153 @@ from nispcodec.fit.losses import (
     uv_error,
     uv_loss,
 )
-from nispcodec.fit.task import Objective, Schedule, Task
+from nispcodec.fit.sizes import LAYERS, Widths
+from nispcodec.fit.task import Schedule, Task
+from nispcodec.mesh.mirror import mirrored_axes
 from nispcodec.mesh.samples import Sampler, SampleSet
 from nispcodec.mesh.training import TrainingSets
 from nispcodec.network import NetworkSpec
 
-MANY_PATCHES = 100
-
 PAPER_HIDDEN = (64,) * 8
 PAPER_LEVELS = 5
-STEPS = {"sdf": 7_500, "chart": 4_500, "uv": 4_400}
-WIDE_STEPS = {"sdf": 5_000, "chart": 2_800, "uv": 3_800}
-
-PRICES = {"sdf": 0.005, "chart": 0.005, "uv": 0.01}
-"""By what share of the loss a bit a weight less may raise it."""
-
 PAPER_STEPS = 40_000
 """What twenty minutes on two cores allow of the published 2000 epochs of 10^6 samples."""
 
+PRICES = {"sdf": 0.005, "chart": 0.01, "uv": 0.01}
+"""By what share of the loss a bit a weight less may raise it."""
 
-def tasks_for(preset: str, sampler: Sampler, sets: TrainingSets) -> list[Task]:
-    """The networks to fit: a chart network for two charts or more, UV where charts have any."""
-    table = sampler.table
-    needed = {"sdf": True, "chart": len(table) > 1, "uv": bool(table.has_uv.any())}
-    if preset == "paper":
-        tasks = paper_tasks(len(table), sets)
-    else:
-        tasks = balanced_tasks(len(table), sampler.patches, sets)
-    return [task for task in tasks if needed[task.name]]
+BATCHES = {"sdf": 2048, "chart": 1024, "uv": 2048}
+SHARES = {"sdf": 1.0, "chart": 0.35, "uv": 0.65}
+"""Of the seconds: the SDF has a core to itself, charts and UVs share the other."""
+
+RATE, FINE_RATE = 1e-3, 5e-4
+FINE = 1.6e-3
+"""Held-out error of the probe from which on the SDF learns slower, or it would learn |SDF|."""
+
+EMBEDDING = 4
+"""Numbers a chart that the UV network is told it by."""
+
+BAND = 0.7
+"""First frequencies, relative to SIREN's, of one of the SDF's two probes; the better goes on."""
+
+SDF_LAST = 0.3
+"""Relative rate of the SDF's last layer: its bias moves the whole field at once."""
+
+PROBE_WIDTH = 24
+PROBE_STEPS = {"sdf": 1000, "chart": 600, "uv": 600}
 
 
-def balanced_tasks(charts: int, patches: int, sets: TrainingSets) -> list[Task]:
+@dataclass(frozen=True)
+class Effort:
+    """`seconds` of one core that the longest fit takes; networks `scale` times as wide."""
+
+    seconds: float
+    scale: float
+
+
+EFFORTS = {
+    "fast": Effort(15.0, 0.8),
+    "balanced": Effort(70.0, 1.0),
+    "best": Effort(430.0, 1.2),
+}
+
+
+@dataclass(frozen=True)
+class Problem:
+    """What the networks of an asset are asked for; `mirror` as in `NetworkSpec`."""
+
+    sets: TrainingSets
+    charts: int
+    has_uv: bool
+    mirror: int
+
+    @staticmethod
+    def of(sampler: Sampler, sets: TrainingSets) -> Problem:
+        """The problem of a sampled asset."""
+        table = sampler.table
+        mirror = sum(
+            bit for bit, axis in zip((1, 2, 4), mirrored_axes(sampler), strict=True) if axis
+        )
+        return Problem(sets, len(table), bool(table.has_uv.any()), mirror)
+
+    @property
+    def networks(self) -> tuple[str, ...]:
+        """A chart network for two charts or more, a UV network where charts have any."""
+        needed = {"sdf": True, "chart": self.charts > 1, "uv": self.has_uv}
+        return tuple(name for name, is_needed in needed.items() if is_needed)
+
+    def specs(self, widths: Widths) -> dict[str, NetworkSpec]:
+        """Sine networks of these widths."""
+        return {name: self._spec(name, widths[name]) for name in self.networks}
+
+    def _spec(self, name: str, width: int) -> NetworkSpec:
+        hidden = (width,) * LAYERS[name]
+        if name == "sdf":
+            return NetworkSpec(hidden, 1, mirror=self.mirror)
+        if name == "chart":
+            return NetworkSpec(hidden, self.charts)
+        return NetworkSpec(
+            hidden, 2, conditioning="embedding", charts=self.charts, embedding=EMBEDDING
+        )
+
+
+def probes(problem: Problem) -> list[Task]:
+    """Small networks that tell how much there is to learn; "fine" is the SDF in finer waves."""
+    specs = problem.specs(dict.fromkeys(problem.networks, PROBE_WIDTH))
+    tasks = [
+        _task(problem.sets, name, spec, _schedule(name, PROBE_STEPS[name]))
+        for name, spec in specs.items()
+    ]
+    low = replace(tasks[0], schedule=replace(tasks[0].schedule, band=BAND))
+    return [low, replace(tasks[0], name="fine"), *tasks[1:]]
+
+
+def sine_tasks(
+    problem: Problem,
+    widths: Widths,
+    seconds: float,
+    errors: Mapping[str, float],
+    budgets: Mapping[str, float],
+) -> list[Task]:
     """Small sine networks with quantised weights, most of the capacity near the surface, SOAP.
 
-    An asset of many patches of texture gets wider networks and fewer steps, so that it takes no
-    longer.
+    errors   held-out errors of the probes, by name
+    budgets  bits for each network; without one the price decides
     """
-    wide = patches > MANY_PATCHES
-    steps = WIDE_STEPS if wide else STEPS
-    sdf = NetworkSpec((64 if wide else 48,) * 4, 1)
-    chart = NetworkSpec((56 if wide else 40,) * 3, charts)
-    uv = NetworkSpec(
-        (64 if wide else 40,) * 4, 2, conditioning="embedding", charts=charts, embedding=4
-    )
-    rate = 5e-4 if wide else 1e-3
-    return _tasks(
-        sets,
-        sdf=(sdf, relative_distance_loss, Schedule(steps["sdf"], rate=rate, price=PRICES["sdf"])),
-        chart=(chart, chart_loss, Schedule(steps["chart"], batch=1024, price=PRICES["chart"])),
-        uv=(uv, uv_loss, Schedule(steps["uv"], price=PRICES["uv"])),
-    )
+    tasks = []
+    for name, spec in problem.specs(widths).items():
+        schedule = _schedule(name, steps_in(seconds * SHARES[name], spec, BATCHES[name]))
+        priced = replace(schedule, price=PRICES[name], budget=budgets.get(name, 0.0))
+        tasks.append(_task(problem.sets, name, spec, priced))
+    return [_sdf_as_probed(tasks[0], errors), *tasks[1:]]
+
+
+def _sdf_as_probed(task: Task, errors: Mapping[str, float]) -> Task:
+    if min(errors["sdf"], errors["fine"]) > FINE:
+        return replace(task, schedule=replace(task.schedule, rate=FINE_RATE))
+    low = errors["sdf"] < errors["fine"]
+    return replace(task, schedule=replace(task.schedule, band=BAND if low else 1.0))
+
+
+def _schedule(name: str, steps: int) -> Schedule:
+    return Schedule(steps, BATCHES[name], RATE, last=SDF_LAST if name == "sdf" else 1.0)
+
+
+def steps_in(seconds: float, spec: NetworkSpec, batch: int) -> int:
+    """How many steps take so long on one core of 2.5 GHz (measured; a model of two terms)."""
+    units = sum(spec.hidden) * batch / 2048
+    return max(1, round(seconds / (2.2e-3 + 2.4e-5 * units)))
 
 
 def paper_tasks(charts: int, sets: TrainingSets) -> list[Task]:
     """The published networks, losses, optimiser and rates (paper, sections 3.2 and 4.1)."""
     slow = Schedule(PAPER_STEPS, rate=1e-4, optimiser="adam")
     fast = Schedule(PAPER_STEPS, rate=5e-4, optimiser="adam")
-    return _tasks(
-        sets,
-        sdf=(paper_sdf(), distance_error, slow),
-        chart=(paper_chart(charts), chart_loss, fast),
-        uv=(paper_uv(charts), uv_loss, fast),
-    )
+    return [
+        Task("sdf", paper_sdf(), *_distance(sets), distance_error, distance_error, slow),
+        Task("chart", paper_chart(charts), *_skin(sets), chart_loss, chart_error, fast),
+        Task("uv", paper_uv(charts), *_skin(sets), uv_loss, uv_error, fast),
+    ]
 
 
 def paper_sdf() -> NetworkSpec:
@@ -91,21 +179,22 @@ def paper_uv(charts: int) -> NetworkSpec:
     )
 
 
-Recipe = tuple[NetworkSpec, Objective, Schedule]
+def _task(sets: TrainingSets, name: str, spec: NetworkSpec, schedule: Schedule) -> Task:
+    """A sine network's task, with its samples, loss and held-out measure."""
+    samples = _distance(sets) if name == "sdf" else _skin(sets)
+    return Task(name, spec, *samples, *_LOSSES[name], schedule)
 
 
-def _tasks(sets: TrainingSets, sdf: Recipe, chart: Recipe, uv: Recipe) -> list[Task]:
-    """Give each network its samples and its held-out measure."""
-    distance, skin = (sets.distance, sets.held_distance), (sets.skin, sets.held_skin)
-    return [
-        _task("sdf", sdf, distance, distance_error),
-        _task("chart", chart, skin, chart_error),
-        _task("uv", uv, skin, uv_error),
-    ]
+_LOSSES = {
+    "sdf": (relative_distance_loss, distance_error),
+    "chart": (chart_loss, chart_error),
+    "uv": (uv_loss, uv_error),
+}
 
 
-def _task(
-    name: str, recipe: Recipe, samples: tuple[SampleSet, SampleSet], error: Objective
-) -> Task:
-    spec, loss, schedule = recipe
-    return Task(name, spec, *samples, loss, error, schedule)
+def _distance(sets: TrainingSets) -> tuple[SampleSet, SampleSet]:
+    return sets.distance, sets.held_distance
+
+
+def _skin(sets: TrainingSets) -> tuple[SampleSet, SampleSet]:
+    return sets.skin, sets.held_skin

@@ -13,6 +13,7 @@ from typing import Any
 
 import torch
 from torch import Tensor
+from torch.nn import functional
 
 STEP_RATE = 0.01
 """Learning rate of the steps, in octaves."""
@@ -25,14 +26,20 @@ FLOOR = 1e-6
 class Quantiser:
     """One step for each group of weights: `groups` (n,) numbers the group of each of n weights.
 
-    Weights that are pruned, with 0 in `kept` (n,), cost no bits.
+    Weights that are pruned, with 0 in `kept` (n,), cost no bits; the others start with `bits` each.
     """
 
-    def __init__(self, weights: Tensor, groups: Tensor, kept: Tensor | None = None) -> None:
+    def __init__(
+        self,
+        weights: Tensor,
+        groups: Tensor,
+        kept: Tensor | None = None,
+        bits: float = FIRST_BITS,
+    ) -> None:
         self.groups = groups
         self.counts = torch.bincount(groups, kept).to(weights.dtype).clamp(min=1.0)
         spread = 0.5 * torch.log2(self._sums(weights.detach().square()))
-        first = spread - 0.5 * torch.log2(self.counts) + GAUSSIAN_BITS - FIRST_BITS
+        first = spread - 0.5 * torch.log2(self.counts) + GAUSSIAN_BITS - bits
         self.log_steps = first.clamp(min=math.log2(FLOOR)).requires_grad_()
         self._adam = torch.optim.Adam(
             [self.log_steps], lr=STEP_RATE, betas=(0.95, 0.99), fused=True
@@ -56,8 +63,8 @@ class Quantiser:
             self.log_steps[group] = math.log2(snapped(step / scale) * scale)
 
     @torch.no_grad()
-    def charge(self, weights: Tensor, price: float) -> None:
-        """Add the gradient of `price` times the rate in bits.
+    def charge(self, weights: Tensor, price: float) -> float:
+        """Add the gradient of `price` times the rate; return the rate, in bits.
 
         A group of n weights with power p on a grid of step s costs n softplus(2 x) / 2 bits,
         x = log2(sqrt(p) / s) + `GAUSSIAN_BITS`: a Gaussian's entropy, kept above 0.
@@ -68,12 +75,13 @@ class Quantiser:
         _add(self.log_steps, -price * self.counts * slope)
         pull = price * slope / (power * math.log(2))
         _add(weights, weights * pull[self.groups])
+        return float((self.counts * functional.softplus(excess)).sum()) / 2
 
-    def learn(self, moving: bool) -> None:
-        """Move the steps along their gradient, unless they are settled; forget the gradient."""
-        if moving:
-            self._adam.step()
-        self.log_steps.grad = None
+    @torch.no_grad()
+    def learn(self, excess: float) -> None:
+        """Move the steps along their gradient, and all of them for `excess` bits less."""
+        self._adam.step()
+        self.log_steps += excess / float(self.counts.sum())
 
     def _sums(self, values: Tensor) -> Tensor:
         """The sum of every group's values."""

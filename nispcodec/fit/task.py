@@ -48,9 +48,12 @@ class Schedule:
     """How long and how fast: `steps` of `batch` points; `rate` is warmed up, then held or lowered.
 
     `optimiser` is "soap" (rate warmed up, then a cosine down to a hundredth) or "adam" (rate held,
-    as the paper does). `price`: by what share of the loss one bit a weight less may raise it; 0
-    leaves the weights float32. `band`: frequencies that the first layer starts with, relative to
-    SIREN's.
+    as the paper does).
+
+    price   by what share of the loss one bit a weight less may raise it; 0: float32 weights
+    band    frequencies that the first layer starts with, relative to SIREN's
+    last    rate of the last layer, relative to the others'
+    budget  bits that all weights together take; 0: as the price says
     """
 
     steps: int
@@ -59,6 +62,8 @@ class Schedule:
     optimiser: str = "soap"
     price: float = 0.0
     band: float = 1.0
+    last: float = 1.0
+    budget: float = 0.0
 
 
 @dataclass(frozen=True)

@@ -13,7 +13,7 @@ from torch import Tensor
 from nispcodec.errors import FitError
 from nispcodec.fit.module import Module
 from nispcodec.fit.prune import Mask
-from nispcodec.fit.quantise import Quantiser
+from nispcodec.fit.quantise import FIRST_BITS, Quantiser
 from nispcodec.fit.soap import Soap
 from nispcodec.fit.task import Batch, Schedule, Task
 from nispcodec.network import Network
@@ -112,15 +112,19 @@ class _Run:
     def _harden(self) -> None:
         """Begin a stage whose weights are not comparable with those before."""
         if self.module.quantiser is None:
-            self.module.quantise()
+            budget = self.task.schedule.budget
+            self.module.quantise(budget / self.task.spec.weight_count or FIRST_BITS)
         else:
             self.module.settle()
         self.best_error, self.best = math.inf, self._weights()
 
     def _charge(self, quantiser: Quantiser, learn: bool) -> None:
-        price = self.task.schedule.price * self.loss / self.task.spec.weight_count
-        quantiser.charge(self.module.weights, price)
-        quantiser.learn(learn)
+        schedule = self.task.schedule
+        price = schedule.price * self.loss / self.task.spec.weight_count
+        rate = quantiser.charge(self.module.weights, price)
+        if learn:
+            quantiser.learn(rate - schedule.budget if schedule.budget else 0.0)
+        quantiser.log_steps.grad = None
 
     def _clip(self) -> None:
         gradient = self.module.weights.grad
@@ -158,7 +162,8 @@ class _Run:
     def _optimiser(self) -> Callable[[float], None]:
         module = self.module
         if self.task.schedule.optimiser == "soap":
-            return Soap(module.weights, module.shapes, module.rates).step
+            rates = module.rates(self.task.schedule.last)
+            return Soap(module.weights, module.shapes, rates).step
         adam = torch.optim.Adam([module.weights])
 
         def move(rate: float) -> None:

@@ -32,7 +32,7 @@ MEASURES = (
     "uv_error_median",
     "uv_error_mean",
 )
-PRESETS = ("balanced", "paper")
+PRESETS = ("balanced", "paper", "fast", "best")
 STEPS = ("byte", "float16", "float32", "same")
 NUMBERS = ("float32", "float16", "int8", "int16", "int32")
 ENDINGS = (".png", ".jpg", ".webp", ".avif")

@@ -90,6 +90,39 @@ def test_a_rate_that_makes_no_sense(
     assert seen == {}
 
 
+@pytest.mark.parametrize(
+    ("given", "expected"),
+    [("20000", 20000), ("20kB", 20000), ("1.5 KiB", 1536), (".5MB", 500_000)],
+)
+def test_a_target_size(encoder, mesh: Path, tmp_path: Path, given: str, expected: int) -> None:
+    seen = encoder(tiny.document())
+    result = nisp("encode", mesh, "-o", tmp_path / "out.nisp", "--target-size", given)
+    assert result.exit_code == 0, result.output
+    assert seen["config"].target_size == expected
+
+
+@pytest.mark.parametrize(
+    ("options", "said"),
+    [
+        (["--target-size", "small"], "expected a size such as 20000, 20kB or 20KiB, found 'small'"),
+        (["--target-size", "1.2.3kB"], "found '1.2.3kB'"),
+        (["--target-size", "-1"], "found '-1'"),
+        (["--target-size", "0"], "expected more than 0"),
+        (["--target-error", "nan"], "expected more than 0"),
+        (["--target-error", "1e-3", "--target-size", "9kB"], "expected one of them"),
+        (["--target-error", "1e-3", "--preset", "paper"], "expected one of them"),
+    ],
+)
+def test_targets_that_make_no_sense(
+    encoder, mesh: Path, tmp_path: Path, options: list[str], said: str
+) -> None:
+    seen = encoder(tiny.document())
+    result = nisp("encode", mesh, "-o", tmp_path / "out.nisp", *options)
+    assert result.exit_code == 2
+    assert said in result.stderr
+    assert seen == {}
+
+
 def test_every_strategy_is_offered() -> None:
     assert tuple(STRATEGIES) == pruning.STRATEGIES
 

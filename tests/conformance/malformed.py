@@ -220,7 +220,7 @@ _FIELDS: dict[str, tuple[dict[int, Any], str]] = {
     "info-key-bool": ({10: {True: 1}}, "document.info.True"),
     "info-value": ({10: {1: [1]}}, "document.info.1"),
     "preset-reserved": ({10: {1: 0}}, "document.info.preset"),
-    "preset-unknown": ({10: {1: 3}}, "document.info.preset"),
+    "preset-unknown": ({10: {1: 5}}, "document.info.preset"),
     "preset-by-name": ({10: {1: "paper"}}, "document.info.preset"),
 }
 _SPECS: dict[str, tuple[dict[int, Any], str]] = {

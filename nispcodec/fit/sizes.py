@@ -1,0 +1,77 @@
+"""How large an asset's networks should be: by short probes, and a model measured on eight assets.
+
+Every network is probed on its own: a small one learns for a few seconds, and the error that it is
+left with says how much there is to learn.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+
+from nispcodec.network import NetworkSpec
+
+Widths = Mapping[str, int]
+"""Width of the hidden layers by the name of the network."""
+
+LAYERS = {"sdf": 4, "chart": 3, "uv": 4}
+MIN_WIDTH, MAX_WIDTH = 8, 128
+MULTIPLE = 2
+
+BITS = 9.5
+"""Of a weight in the file at the default price (mean of eight assets)."""
+
+
+@dataclass(frozen=True)
+class Model:
+    """Width = `width` (error of the probe / `error`) ^ `power`, within `lowest` and `highest`."""
+
+    width: float
+    error: float
+    power: float
+    lowest: int
+    highest: int
+
+    def of(self, error: float) -> float:
+        """The width for a probe that is left with `error`."""
+        width = self.width * (error / self.error) ** self.power
+        return min(max(width, self.lowest), self.highest)
+
+
+MODELS = {
+    "sdf": Model(38, 0.95e-3, 0.8, 24, 72),
+    "chart": Model(26, 0.05, 0.3, 16, 56),
+    "uv": Model(26, 3e-3, 0.3, 20, 64),
+}
+
+
+def widths_for(errors: Mapping[str, float], scale: float = 1.0) -> Widths:
+    """The width of every network, from the held-out errors of the probes, times `scale`.
+
+    The SDF is probed twice, as "sdf" and "fine": the better one counts.
+    """
+    best = {**errors, "sdf": min(errors["sdf"], errors.get("fine", errors["sdf"]))}
+    return {
+        name: even_width(scale * MODELS[name].of(error))
+        for name, error in best.items()
+        if name in MODELS
+    }
+
+
+def even_width(width: float) -> int:
+    """The nearest width that networks may have."""
+    return min(max(MULTIPLE * round(width / MULTIPLE), MIN_WIDTH), MAX_WIDTH)
+
+
+def bytes_of(specs: Mapping[str, NetworkSpec]) -> float:
+    """What the weights of networks take in the file at the default price."""
+    return sum(spec.weight_count for spec in specs.values()) * BITS / 8
+
+
+def scale_for_bytes(size: Callable[[float], float], wanted: float) -> float:
+    """The scale at which `size(scale)`, which never falls, reaches `wanted` bytes."""
+    low, high = 0.0, 8.0
+    for _ in range(20):
+        middle = (low + high) / 2
+        low, high = (low, middle) if size(middle) >= wanted else (middle, high)
+    return high
