@@ -6,8 +6,9 @@ SDF and UV networks of each asset and seed: float16 and lottery tickets of it at
 in training at `PRICES`, and both: the tickets' masks held while quantising at `BOTH`. All trainings
 have as many steps and start from the same weights. Kept case by case: an interrupted run goes on.
 The default takes a quarter of an hour of one core, and leaves all networks far from what they can
-reach; `--steps 4000` says more. `--table` trains nothing. In the table each setting is beside float16, unpruned, and beside the
-curve of quantising alone: bytes at the same error, below 1 where pruning pays.
+reach; `--steps 4000` says more. `--table` trains nothing. In the table each setting is beside
+float16, unpruned, and beside the curve of quantising alone: bytes at the same error, below 1 where
+pruning pays.
 """
 
 from __future__ import annotations
