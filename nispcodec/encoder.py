@@ -149,33 +149,26 @@ def _fit(
 ) -> Mapping[str, Network]:
     """The networks: the published ones, or sine networks as large as the target asks."""
     progress(Progress(stage="fit"))
+    from nispcodec.fit.parallel import fit_networks, resolve_device
     from nispcodec.fit.presets import EFFORTS, Problem, paper_tasks
-    from nispcodec.targets import Fitting, fit_to_error, fit_to_size, fit_with_preset
+    from nispcodec.targets import Fitting, fit_to_error, fit_to_size, fit_with_preset, pruned
 
-    problem, fit = Problem.of(sampler, sets), _fitter(config)
+    device, threads = resolve_device(config.device), config.threads or os.cpu_count() or 1
+
+    def fit(tasks: list[Task], listen: Listener) -> dict[str, Network]:
+        return fit_networks(tasks, config.seed, device, threads, listen)
+
+    problem = Problem.of(sampler, sets)
     if config.preset == "paper":
         tasks = paper_tasks(problem.charts, sets)
-        return fit([task for task in tasks if task.name in problem.networks], progress)
-    fitting = Fitting(problem, EFFORTS[config.preset], fit, progress)
+        needed = [task for task in tasks if task.name in problem.networks]
+        return fit(pruned(needed, config.prunings()), progress)
+    fitting = Fitting(problem, EFFORTS[config.preset], fit, progress, config.prunings())
     if config.target_error is not None:
         return fit_to_error(fitting, config.target_error)
     if config.target_size is not None:
         return fit_to_size(fitting, config.target_size, document)
     return fit_with_preset(fitting)
-
-
-def _fitter(config: EncodeConfig) -> Callable[[list[Task], Listener], dict[str, Network]]:
-    """What fits tasks as the configuration says: pruned, seeded, on a device, on so many cores."""
-    from nispcodec.fit.parallel import fit_networks, resolve_device
-
-    prunings, device = config.prunings(), resolve_device(config.device)
-    threads = config.threads or os.cpu_count() or 1
-
-    def fit(tasks: list[Task], listen: Listener) -> dict[str, Network]:
-        pruned = [replace(task, pruning=prunings.get(task.name)) for task in tasks]
-        return fit_networks(pruned, config.seed, device, threads, listen)
-
-    return fit
 
 
 def _short_frame(frame: Frame) -> Frame:

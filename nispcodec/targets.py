@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -12,6 +12,7 @@ from nispcodec.decode.evaluate import evaluate
 from nispcodec.document import Document
 from nispcodec.errors import FitError, NispError
 from nispcodec.fit.presets import Effort, Problem, probes, sine_tasks
+from nispcodec.fit.prune import Pruning
 from nispcodec.fit.sizes import (
     MIN_WIDTH,
     Widths,
@@ -42,12 +43,13 @@ LEAST_ERROR = 2e-5
 
 @dataclass(frozen=True)
 class Fitting:
-    """An asset's problem, how much effort it is worth, and what runs tasks side by side."""
+    """An asset's problem, how much effort it is worth, what is pruned, and what runs tasks."""
 
     problem: Problem
     effort: Effort
     fit: Fit
     listen: Listener
+    prunings: Mapping[str, Pruning] = field(default_factory=dict)
 
     def probe(self) -> dict[str, float]:
         """The held-out errors of the probes, by name."""
@@ -55,7 +57,7 @@ class Fitting:
 
         def heard(progress: Progress) -> None:
             errors[progress.network] = progress.error
-            self.listen(replace(progress, network="", stage=f"probe of {progress.network}"))
+            self.listen(Progress(stage="probe how much there is to learn"))
 
         self.fit(probes(self.problem), heard)
         return errors
@@ -64,7 +66,13 @@ class Fitting:
         self, widths: Widths, errors: Mapping[str, float], budgets: Mapping[str, float]
     ) -> list[Task]:
         """The tasks for networks of these widths."""
-        return sine_tasks(self.problem, widths, self.effort.seconds, errors, budgets)
+        tasks = sine_tasks(self.problem, widths, self.effort.seconds, errors, budgets)
+        return pruned(tasks, self.prunings)
+
+
+def pruned(tasks: list[Task], prunings: Mapping[str, Pruning]) -> list[Task]:
+    """The tasks, with each network's pruning."""
+    return [replace(task, pruning=prunings.get(task.name)) for task in tasks]
 
 
 def fit_with_preset(fitting: Fitting) -> Networks:

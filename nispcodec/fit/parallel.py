@@ -1,23 +1,34 @@
-"""Fit several networks at once, on as many cores as asked."""
+"""Fit several networks at once, on as many cores as asked.
+
+Each network has a process of its own: the steps are so short that threads would wait for Python's
+lock most of the time.
+"""
 
 from __future__ import annotations
 
-import threading
+import multiprocessing
+import queue
+import signal
+import sys
 from collections.abc import Iterator
-from concurrent.futures import FIRST_EXCEPTION, ThreadPoolExecutor, wait
-from contextlib import contextmanager, nullcontext
+from contextlib import AbstractContextManager, contextmanager, nullcontext
+from multiprocessing.context import BaseContext
+from multiprocessing.process import BaseProcess
+from multiprocessing.queues import Queue
 
 import torch
 
 from nispcodec.errors import FitError
 from nispcodec.fit.task import Task
 from nispcodec.fit.tickets import fit
-from nispcodec.fit.train import Cancelled
 from nispcodec.network import Network
 from nispcodec.progress import Listener, Progress
 
-# Each network is so small that one core an operation is fastest; the networks run side by side.
-CORES_PER_OPERATION = 1
+PATIENCE = 1.0
+"""Seconds without news after which to look whether every process is still there."""
+
+Message = tuple[str, Progress | Network | Exception]
+Core = AbstractContextManager[object]
 
 
 def fit_networks(
@@ -29,27 +40,17 @@ def fit_networks(
     The result depends on the tasks, the seed and the device alone. An exception in one task, or
     Ctrl-C, stops the others.
     """
-    shared, stop = threading.Semaphore(max(1, threads - 1)), threading.Event()
-    first = nullcontext() if threads > 1 else shared
-
-    def heard(progress: Progress) -> None:
-        if stop.is_set():
-            raise Cancelled
-        listen(progress)
-
-    with _single_core_operations(), ThreadPoolExecutor(len(tasks)) as pool:
-        futures = {
-            task.name: pool.submit(fit, task, seed, device, shared if turn else first, heard)
-            for turn, task in enumerate(tasks)
-        }
-        try:
-            done = wait(futures.values(), return_when=FIRST_EXCEPTION).done
-            for future in done:
-                future.result()
-        except BaseException:
-            stop.set()
-            raise
-    return {name: future.result() for name, future in futures.items()}
+    context = _context(device)
+    messages: Queue[Message] = context.Queue()
+    shared = context.Semaphore(max(1, threads - 1))
+    cores: list[Core] = [nullcontext() if threads > 1 else shared, *[shared] * (len(tasks) - 1)]
+    workers = {
+        task.name: _started(context, task, seed, device, core, messages)
+        for task, core in zip(tasks, cores, strict=True)
+    }
+    with _ended(list(workers.values())):
+        networks = _collected(workers, messages, listen)
+    return {task.name: networks[task.name] for task in tasks}
 
 
 def resolve_device(wanted: str) -> str:
@@ -66,11 +67,65 @@ def resolve_device(wanted: str) -> str:
     return wanted
 
 
+def _context(device: str) -> BaseContext:
+    """Forked where that is safe: nothing is imported or copied again."""
+    forked = sys.platform == "linux" and device == "cpu"
+    return multiprocessing.get_context("fork" if forked else "spawn")
+
+
+def _started(
+    context: BaseContext, task: Task, seed: int, device: str, core: Core, messages: Queue[Message]
+) -> BaseProcess:
+    arguments = (task, seed, device, core, messages)
+    process = context.Process(target=_work, args=arguments, daemon=True)  # type: ignore[attr-defined]
+    process.start()
+    return process
+
+
+def _work(task: Task, seed: int, device: str, core: Core, messages: Queue[Message]) -> None:
+    """What a process does: tell progress, then the network or what went wrong."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    torch.set_num_threads(1)
+    try:
+        told = fit(task, seed, device, core, lambda update: messages.put((task.name, update)))
+        messages.put((task.name, told))
+    except Exception as error:
+        messages.put((task.name, error))
+
+
+def _collected(
+    workers: dict[str, BaseProcess], messages: Queue[Message], listen: Listener
+) -> dict[str, Network]:
+    networks: dict[str, Network] = {}
+    while len(networks) < len(workers):
+        try:
+            name, told = messages.get(timeout=PATIENCE)
+        except queue.Empty:
+            _check_alive(workers, networks)
+            continue
+        if isinstance(told, Exception):
+            raise told
+        if isinstance(told, Progress):
+            listen(told)
+        else:
+            networks[name] = told
+    return networks
+
+
+def _check_alive(workers: dict[str, BaseProcess], networks: dict[str, Network]) -> None:
+    for name, worker in workers.items():
+        if name not in networks and worker.exitcode:
+            raise FitError(
+                f"{name} network: its process ended with code {worker.exitcode}; out of memory?"
+            )
+
+
 @contextmanager
-def _single_core_operations() -> Iterator[None]:
-    before = torch.get_num_threads()
-    torch.set_num_threads(CORES_PER_OPERATION)
+def _ended(workers: list[BaseProcess]) -> Iterator[None]:
     try:
         yield
     finally:
-        torch.set_num_threads(before)
+        for worker in workers:
+            worker.terminate()
+        for worker in workers:
+            worker.join()

@@ -58,9 +58,9 @@ class Effort:
 
 
 EFFORTS = {
-    "fast": Effort(15.0, 0.8),
-    "balanced": Effort(70.0, 1.0),
-    "best": Effort(430.0, 1.2),
+    "fast": Effort(9.0, 0.8),
+    "balanced": Effort(45.0, 1.0),
+    "best": Effort(320.0, 1.2),
 }
 
 

@@ -34,10 +34,6 @@ SETTLED = 0.25
 RETRIES = 4
 
 
-class Cancelled(Exception):
-    """The fit was told to stop."""
-
-
 def train(
     task: Task,
     seed: int,

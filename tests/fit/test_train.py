@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import multiprocessing
+import os
 import threading
 from collections.abc import Callable
 from dataclasses import replace
@@ -127,7 +129,20 @@ def test_an_interrupt_stops_every_network() -> None:
     with pytest.raises(KeyboardInterrupt):
         fit_networks([sdf_task(), chart_task()], 0, "cpu", 2, interrupted)
     assert max(steps.values()) < 300
-    assert torch.get_num_threads() >= 1
+    assert not multiprocessing.active_children()
+
+
+def test_an_error_in_one_network_is_the_error_of_all() -> None:
+    hopeless = replace(chart_task(), error=lambda module, batch: torch.tensor(float("nan")))
+    with pytest.raises(FitError, match=r"chart network.*does not converge"):
+        fit_networks([sdf_task(100_000), hopeless], 0, "cpu", 2, silent)
+    assert not multiprocessing.active_children()
+
+
+def test_a_process_that_is_killed_is_an_error() -> None:
+    killed = replace(chart_task(), error=lambda module, batch: os._exit(9))
+    with pytest.raises(FitError, match="chart network: its process ended with code 9"):
+        fit_networks([sdf_task(), killed], 0, "cpu", 2, silent)
 
 
 @pytest.mark.parametrize("device", ["gpu", "mps", "cuda:99x", ""])
