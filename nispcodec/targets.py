@@ -66,7 +66,7 @@ class Fitting:
         self, widths: Widths, errors: Mapping[str, float], budgets: Mapping[str, float]
     ) -> list[Task]:
         """The tasks for networks of these widths."""
-        tasks = sine_tasks(self.problem, widths, self.effort.seconds, errors, budgets)
+        tasks = sine_tasks(self.problem, widths, self.effort, errors, budgets)
         return pruned(tasks, self.prunings)
 
 

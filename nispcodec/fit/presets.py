@@ -13,7 +13,7 @@ from nispcodec.fit.losses import (
     uv_error,
     uv_loss,
 )
-from nispcodec.fit.sizes import LAYERS, Widths
+from nispcodec.fit.sizes import FINE, LAYERS, Widths
 from nispcodec.fit.task import Schedule, Task
 from nispcodec.mesh.mirror import mirrored_axes
 from nispcodec.mesh.samples import Sampler, SampleSet
@@ -33,14 +33,11 @@ SHARES = {"sdf": 1.0, "chart": 0.35, "uv": 0.65}
 """Of the seconds: the SDF has a core to itself, charts and UVs share the other."""
 
 RATE, FINE_RATE = 1e-3, 5e-4
-FINE = 1.6e-3
-"""Held-out error of the probe from which on the SDF learns slower, or it would learn |SDF|."""
-
 EMBEDDING = 4
 """Numbers a chart that the UV network is told it by."""
 
-BAND = 0.7
-"""First frequencies, relative to SIREN's, of one of the SDF's two probes; the better goes on."""
+PROBE_BAND = 0.7
+"""A short fit needs lower first frequencies, or the SDF is flat for most of it."""
 
 SDF_LAST = 0.3
 """Relative rate of the SDF's last layer: its bias moves the whole field at once."""
@@ -51,16 +48,20 @@ PROBE_STEPS = {"sdf": 1000, "chart": 600, "uv": 600}
 
 @dataclass(frozen=True)
 class Effort:
-    """`seconds` of one core that the longest fit takes; networks `scale` times as wide."""
+    """`seconds` of one core that the longest fit takes; networks `scale` times as wide.
+
+    `band`: the first frequencies of the SDF, relative to SIREN's.
+    """
 
     seconds: float
     scale: float
+    band: float = 1.0
 
 
 EFFORTS = {
-    "fast": Effort(9.0, 0.8),
-    "balanced": Effort(45.0, 1.0),
-    "best": Effort(320.0, 1.2),
+    "fast": Effort(9.0, 0.8, PROBE_BAND),
+    "balanced": Effort(55.0, 1.0),
+    "best": Effort(330.0, 1.2),
 }
 
 
@@ -104,20 +105,18 @@ class Problem:
 
 
 def probes(problem: Problem) -> list[Task]:
-    """Small networks that tell how much there is to learn; "fine" is the SDF in finer waves."""
+    """Small networks and short fits that tell how much there is to learn."""
     specs = problem.specs(dict.fromkeys(problem.networks, PROBE_WIDTH))
-    tasks = [
-        _task(problem.sets, name, spec, _schedule(name, PROBE_STEPS[name]))
+    return [
+        _task(problem.sets, name, spec, _schedule(name, PROBE_STEPS[name], PROBE_BAND))
         for name, spec in specs.items()
     ]
-    low = replace(tasks[0], schedule=replace(tasks[0].schedule, band=BAND))
-    return [low, replace(tasks[0], name="fine"), *tasks[1:]]
 
 
 def sine_tasks(
     problem: Problem,
     widths: Widths,
-    seconds: float,
+    effort: Effort,
     errors: Mapping[str, float],
     budgets: Mapping[str, float],
 ) -> list[Task]:
@@ -128,21 +127,21 @@ def sine_tasks(
     """
     tasks = []
     for name, spec in problem.specs(widths).items():
-        schedule = _schedule(name, steps_in(seconds * SHARES[name], spec, BATCHES[name]))
-        priced = replace(schedule, price=PRICES[name], budget=budgets.get(name, 0.0))
-        tasks.append(_task(problem.sets, name, spec, priced))
-    return [_sdf_as_probed(tasks[0], errors), *tasks[1:]]
+        steps = steps_in(effort.seconds * SHARES[name], spec, BATCHES[name])
+        schedule = replace(
+            _schedule(name, steps, effort.band),
+            rate=FINE_RATE if name == "sdf" and errors["sdf"] > FINE else RATE,
+            price=PRICES[name],
+            budget=budgets.get(name, 0.0),
+        )
+        tasks.append(_task(problem.sets, name, spec, schedule))
+    return tasks
 
 
-def _sdf_as_probed(task: Task, errors: Mapping[str, float]) -> Task:
-    if min(errors["sdf"], errors["fine"]) > FINE:
-        return replace(task, schedule=replace(task.schedule, rate=FINE_RATE))
-    low = errors["sdf"] < errors["fine"]
-    return replace(task, schedule=replace(task.schedule, band=BAND if low else 1.0))
-
-
-def _schedule(name: str, steps: int) -> Schedule:
-    return Schedule(steps, BATCHES[name], RATE, last=SDF_LAST if name == "sdf" else 1.0)
+def _schedule(name: str, steps: int, band: float) -> Schedule:
+    if name != "sdf":
+        return Schedule(steps, BATCHES[name], RATE)
+    return Schedule(steps, BATCHES[name], RATE, band=band, last=SDF_LAST)
 
 
 def steps_in(seconds: float, spec: NetworkSpec, batch: int) -> int:
