@@ -2,7 +2,8 @@
 
 A fitted SDF may cross zero where there is no surface, far from its training samples. Such a
 crossing gives itself away: it lies outside the normalised frame's unit ball, or it is tiny and the
-field around it is no distance field.
+field around it is no distance field. A small hollow that nothing leads into is dropped as well:
+nobody can see into it.
 """
 
 from __future__ import annotations
@@ -22,6 +23,7 @@ from nispcodec.network import Network
 # pieces are mostly scraps of real detail that the fit could not hold: only specks are dropped.
 STEEP, SMALL_SHARE = 1.7, 0.05
 FLAT, SPECK_AREA = 0.4, 2e-3
+HOLLOW_SHARE = 0.01
 SOME = 20_000
 
 Integers = NDArray[np.int32]
@@ -74,8 +76,8 @@ def components(surface: Surface) -> tuple[int, Integers]:
 def spurious(network: Network, surface: Surface) -> tuple[NDArray[np.bool_], Integers]:
     """Which components are noise (c,) bool, and the component of each vertex (n,).
 
-    A component is noise when all of it lies outside the unit ball, or when it is small and the
-    field's mean slope on it is far from the slope elsewhere.
+    A component is noise when all of it lies outside the unit ball, when it is small and the field's
+    mean slope on it is far from the slope elsewhere, or when it is a small hollow.
     """
     count, labels = components(surface)
     if count < 2:
@@ -85,7 +87,15 @@ def spurious(network: Network, surface: Surface) -> tuple[NDArray[np.bool_], Int
     vertices = np.bincount(labels, minlength=count)
     slope = _mean_slopes(network, surface, labels, vertices)
     flat = (slope < FLAT) & (vertices * surface.cell**2 < SPECK_AREA)
-    return (nearest > OUTSIDE) | (slope > STEEP) | flat, labels
+    hollow = (_volumes(surface, labels) < 0) & (vertices < HOLLOW_SHARE * len(labels))
+    return (nearest > OUTSIDE) | (slope > STEEP) | flat | hollow, labels
+
+
+def _volumes(surface: Surface, labels: Integers) -> NDArray[np.float64]:
+    """What each closed component encloses; below 0 when its outside is within (Gauss)."""
+    a, b, c = np.moveaxis(surface.positions[surface.faces].astype(np.float64), 1, 0)
+    volume = np.einsum("ij,ij->i", a, np.cross(b, c)) / 6
+    return np.bincount(labels[surface.faces[:, 0]], volume)
 
 
 def _mean_slopes(

@@ -9,12 +9,16 @@ from nispcodec.mesh.samples import BETA, Sampler, SampleSet
 TIGHT = 1 / 300
 """Mean distance (normalised frame) of the samples that sharpen the zero set."""
 
+WIDE = 1 / 12
+"""Mean distance of the samples for the insides of bodies, of which the cube's are few."""
+
 SKIN = 3e-3
 """Mean distance of the samples for charts and UVs: decisions far from the surface are wasted."""
 
 NEAR_COUNT = 80_000
 TIGHT_COUNT = 240_000
 CUBE_COUNT = 80_000
+WIDE_COUNT = 40_000
 SKIN_COUNT = 250_000
 MEMBRANE_COUNT = 12_000
 HELD_OUT_COUNT = 20_000
@@ -37,6 +41,7 @@ def training_sets(sampler: Sampler) -> TrainingSets:
         sampler.near(NEAR_COUNT, 1 / BETA),
         sampler.near(TIGHT_COUNT, TIGHT),
         sampler.cube(CUBE_COUNT),
+        sampler.near(WIDE_COUNT, WIDE),
     )
     return TrainingSets(
         distance=SampleSet.joined(distance),

@@ -125,6 +125,23 @@ def test_small_real_bodies_stay(ball: Network) -> None:
     assert not unwanted.any()
 
 
+def hollow(outer: float, inner: float) -> Network:
+    """An octahedron with a hollow: the middle of its wall is the ridge of the field."""
+    axes = np.vstack([np.eye(3), -np.eye(3)])
+    middle, half = (outer + inner) / 2 / np.sqrt(3), (outer - inner) / 2 / np.sqrt(3)
+    away = np.full((2, 6), 1 / np.sqrt(3)) * [[1.0], [-1.0]]
+    layers = [(axes, np.zeros(6)), (away, [-middle, middle]), (np.ones((1, 2)), [-half])]
+    return tiny.relu_network([(np.asarray(w), np.asarray(b)) for w, b in layers])
+
+
+@pytest.mark.parametrize(("inner", "dropped"), [(0.06, 1), (0.5, 0)])
+def test_small_hollows_are_dropped_and_rooms_stay(inner: float, dropped: int) -> None:
+    network = hollow(0.8, inner)
+    surface = extract(network, 96)
+    assert components(surface)[0] == 2
+    assert without_noise(network, surface)[1].dropped == dropped
+
+
 def test_without_renumbers() -> None:
     positions = np.arange(18, dtype=np.float32).reshape(6, 3)
     surface = Surface(positions, np.array([[0, 1, 2], [3, 4, 5]], np.int32), 0.1)
