@@ -95,7 +95,7 @@ def _volumes(surface: Surface, labels: Integers) -> NDArray[np.float64]:
     """What each closed component encloses; below 0 when its outside is within (Gauss)."""
     a, b, c = np.moveaxis(surface.positions[surface.faces].astype(np.float64), 1, 0)
     volume = np.einsum("ij,ij->i", a, np.cross(b, c)) / 6
-    return np.bincount(labels[surface.faces[:, 0]], volume)
+    return np.bincount(labels[surface.faces[:, 0]], volume).astype(np.float64)
 
 
 def _mean_slopes(
