@@ -12,10 +12,8 @@ a result for the same bytes is not measured again.
 
 from __future__ import annotations
 
-import json
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from hashlib import sha256
 from pathlib import Path
 
 import click
@@ -23,7 +21,8 @@ import numpy as np
 from torch import Tensor
 
 import nispcodec
-from benchmarks.machine import commit, machine, versions
+from benchmarks.machine import commit
+from benchmarks.models import digest, keep, known, unmeasured
 from benchmarks.target import Record, Target
 from nispcodec.asset import TexturedMesh
 from nispcodec.decode.evaluate import evaluate
@@ -209,7 +208,7 @@ def measure(path: Path, source: Path, seed: int, threads: int) -> tuple[Record, 
     ours = numbers["ours"]["color_psnr"]
     record = {
         "commit": commit(),
-        "model": sha256(path.read_bytes()).hexdigest(),
+        "model": digest(path),
         "charts": len(model.document.charts),
         "weights": {name: each.spec.weight_count for name, each in networks.items()},
         "gains": {name: ours - numbers[name]["color_psnr"] for name in networks},
@@ -229,18 +228,14 @@ def main(
     models: Path, assets: Path, only: tuple[str, ...], seed: int, threads: int, output: Path
 ) -> None:
     """Compare every NAME.nisp in MODELS and print asked against measured."""
-    records: Record = json.loads(output.read_text())["assets"] if output.exists() else {}
-    for path in sorted(models.glob("*.nisp")):
-        name, digest = path.stem, sha256(path.read_bytes()).hexdigest()
-        if (only and name not in only) or records.get(name, {}).get("model") == digest:
-            continue
-        click.echo(f"{name} ...", err=True)
+    records = known(output)
+    output.parent.mkdir(parents=True, exist_ok=True)
+    for path in unmeasured(models, only, records):
+        name = path.stem
         records[name], drawn = measure(path, assets / name / f"{name}.obj", seed, threads)
-        everything = {"machine": machine(), "versions": versions(), "assets": records}
-        output.parent.mkdir(parents=True, exist_ok=True)
         picture = output.with_name(f"{output.stem}_{name}.webp")
         write_atomic(picture, image_bytes([drawn], ".webp"))
-        write_atomic(output, json.dumps(everything, indent=1).encode() + b"\n")
+        keep(output, records)
     for name, record in sorted(records.items()):
         click.echo(_told_of(name, record))
 

@@ -8,24 +8,22 @@ the same bytes is not measured again. Where others use the machine, compare proc
 
 from __future__ import annotations
 
-import json
 import os
 import sys
 import tempfile
-from hashlib import sha256
 from pathlib import Path
 
 import click
 import numpy as np
 
 import nispcodec
-from benchmarks.machine import commit, machine, versions
+from benchmarks.machine import commit
 from benchmarks.measure import run
+from benchmarks.models import digest, keep, known, unmeasured
 from benchmarks.target import Record, Target
 from nispcodec.decode.model import NispModel
 from nispcodec.mesh.load import load_mesh
 from nispcodec.metrics.pictures import compare_pictures
-from nispcodec.output import write_atomic
 from nispcodec.render.camera import turntable
 from nispcodec.render.fragments import Floats, Scene
 from nispcodec.render.maps import Maps
@@ -128,7 +126,7 @@ def measure(path: Path, source: Path) -> Record:
     decoded = scene_of(model.to_mesh(RESOLUTION), model.document.frame)
     return {
         "commit": commit(),
-        "model": sha256(path.read_bytes()).hexdigest(),
+        "model": digest(path),
         "pictures": likeness(original, field),
         "silhouette": silhouette(original, decoded, field),
         "cost": cost(path),
@@ -142,16 +140,10 @@ def measure(path: Path, source: Path) -> Record:
 @click.option("-o", "--output", type=click.Path(path_type=Path), default=RESULTS, show_default=True)
 def main(models: Path, assets: Path, only: tuple[str, ...], output: Path) -> None:
     """Measure every NAME.nisp in MODELS and print asked against measured."""
-    records: Record = json.loads(output.read_text())["assets"] if output.exists() else {}
-    for path in sorted(models.glob("*.nisp")):
-        name, digest = path.stem, sha256(path.read_bytes()).hexdigest()
-        if (only and name not in only) or records.get(name, {}).get("model") == digest:
-            continue
-        click.echo(f"{name} ...", err=True)
-        records[name] = measure(path, assets / name / f"{name}.obj")
-        everything = {"machine": machine(), "versions": versions(), "paper": PAPER}
-        output.parent.mkdir(parents=True, exist_ok=True)
-        write_atomic(output, json.dumps(everything | {"assets": records}, indent=1).encode())
+    records = known(output)
+    for path in unmeasured(models, only, records):
+        records[path.stem] = measure(path, assets / path.stem / f"{path.stem}.obj")
+        keep(output, records, paper=PAPER)
     for name, record in sorted(records.items()):
         for part in ("pictures", "silhouette"):
             values = ", ".join(f"{key} {value:.4g}" for key, value in record[part].items())
