@@ -89,6 +89,9 @@ def encode(
 ) -> NispModel:
     """Fit networks to an asset. Ctrl-C and errors leave nothing behind.
 
+    Each network has a process of its own. Outside of Linux, and with CUDA, these start afresh: a
+    script then wants `if __name__ == "__main__":` around its calls.
+
     Raises MeshError when nothing of the mesh can be held by a signed distance, FitError when a
     network does not converge.
     """

@@ -38,6 +38,7 @@ class Module:
         matrices[0] *= band
         table = torch.randn(spec.charts, max(spec.embedding, 1), generator=generator)
         parts = [*matrices, table] if spec.embedding else matrices
+        self.mirrored = torch.tensor(spec.mirrored, device=device)
         self.shapes = [(part.shape[0], part.shape[1]) for part in parts]
         self.weights = torch.cat([part.flatten() for part in parts]).to(device).requires_grad_()
 
@@ -124,8 +125,7 @@ class Module:
     def _encoded(self, points: Tensor, charts: Tensor | None, table: Tensor) -> Tensor:
         spec = self.spec
         if spec.mirror:
-            mirrored = torch.tensor(spec.mirrored, device=points.device)
-            points = torch.where(mirrored, points.abs(), points)
+            points = torch.where(self.mirrored, points.abs(), points)
         if spec.conditioning == "scalar" and charts is not None:
             scalar = (2 * charts[:, None] + 1) / spec.charts - 1
             points = torch.cat([points, scalar.to(points.dtype)], dim=1)

@@ -12,7 +12,7 @@ import signal
 import sys
 from collections.abc import Iterator
 from contextlib import AbstractContextManager, contextmanager, nullcontext
-from multiprocessing.context import BaseContext
+from multiprocessing.context import ForkContext, SpawnContext
 from multiprocessing.process import BaseProcess
 from multiprocessing.queues import Queue
 
@@ -29,6 +29,7 @@ PATIENCE = 1.0
 
 Message = tuple[str, Progress | Network | Exception]
 Core = AbstractContextManager[object]
+Context = ForkContext | SpawnContext
 
 
 def fit_networks(
@@ -67,23 +68,27 @@ def resolve_device(wanted: str) -> str:
     return wanted
 
 
-def _context(device: str) -> BaseContext:
+def _context(device: str) -> Context:
     """Forked where that is safe: nothing is imported or copied again."""
-    forked = sys.platform == "linux" and device == "cpu"
-    return multiprocessing.get_context("fork" if forked else "spawn")
+    if sys.platform == "linux" and device == "cpu":
+        return multiprocessing.get_context("fork")
+    return multiprocessing.get_context("spawn")
 
 
 def _started(
-    context: BaseContext, task: Task, seed: int, device: str, core: Core, messages: Queue[Message]
+    context: Context, task: Task, seed: int, device: str, core: Core, messages: Queue[Message]
 ) -> BaseProcess:
     arguments = (task, seed, device, core, messages)
-    process = context.Process(target=_work, args=arguments, daemon=True)  # type: ignore[attr-defined]
+    process = context.Process(target=_work, args=arguments, daemon=True)
     process.start()
     return process
 
 
 def _work(task: Task, seed: int, device: str, core: Core, messages: Queue[Message]) -> None:
-    """What a process does: tell progress, then the network or what went wrong."""
+    """What a process does: tell progress, then the network or what went wrong.
+
+    Ctrl-C reaches every process; only the one that started the others answers it.
+    """
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     torch.set_num_threads(1)
     try:

@@ -38,6 +38,7 @@ class Quantiser:
     ) -> None:
         self.groups = groups
         self.counts = torch.bincount(groups, kept).to(weights.dtype).clamp(min=1.0)
+        self._number = float(self.counts.sum())
         spread = 0.5 * torch.log2(self._sums(weights.detach().square()))
         first = spread - 0.5 * torch.log2(self.counts) + GAUSSIAN_BITS - bits
         self.log_steps = first.clamp(min=math.log2(FLOOR)).requires_grad_()
@@ -81,7 +82,7 @@ class Quantiser:
     def learn(self, excess: float) -> None:
         """Move the steps along their gradient, and all of them for `excess` bits less."""
         self._adam.step()
-        self.log_steps += excess / float(self.counts.sum())
+        self.log_steps += excess / self._number
 
     def _sums(self, values: Tensor) -> Tensor:
         """The sum of every group's values."""

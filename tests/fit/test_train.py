@@ -14,6 +14,7 @@ import torch
 from torch import Tensor
 
 from nispcodec.errors import FitError
+from nispcodec.fit import parallel
 from nispcodec.fit.losses import chart_error, chart_loss, distance_error, relative_distance_loss
 from nispcodec.fit.module import Module
 from nispcodec.fit.parallel import fit_networks, resolve_device
@@ -116,6 +117,15 @@ def test_the_same_seed_gives_the_same_weights_on_any_number_of_threads() -> None
     weights = [result["sdf"].tensors["weight.1"] for result in results]
     assert np.array_equal(weights[0], weights[1])
     assert not np.array_equal(weights[0], weights[2])
+
+
+def test_processes_that_start_afresh_give_the_same(monkeypatch: pytest.MonkeyPatch) -> None:
+    """As on other systems than Linux, and for CUDA."""
+    tasks = [sdf_task(50), chart_task()]
+    forked = fit_networks(tasks, 0, "cpu", 2, silent)
+    monkeypatch.setattr(parallel, "_context", lambda device: multiprocessing.get_context("spawn"))
+    fresh = fit_networks(tasks, 0, "cpu", 2, silent)
+    assert np.array_equal(forked["sdf"].tensors["weight.1"], fresh["sdf"].tensors["weight.1"])
 
 
 def test_an_interrupt_stops_every_network() -> None:
