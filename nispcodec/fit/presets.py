@@ -50,18 +50,20 @@ PROBE_STEPS = {"sdf": 1000, "chart": 600, "uv": 600}
 class Effort:
     """`seconds` of one core that the longest fit takes; networks `scale` times as wide.
 
+    `reviews`: of the SDF; without them parts go missing that are a small share of the area.
     `band`: the first frequencies of the SDF, relative to SIREN's.
     """
 
     seconds: float
     scale: float
+    reviews: int
     band: float = 1.0
 
 
 EFFORTS = {
-    "fast": Effort(9.0, 0.8, PROBE_BAND),
-    "balanced": Effort(55.0, 1.0),
-    "best": Effort(330.0, 1.2),
+    "fast": Effort(9.0, 0.8, 3, PROBE_BAND),
+    "balanced": Effort(55.0, 1.0, 9),
+    "best": Effort(330.0, 1.2, 15),
 }
 
 
@@ -133,6 +135,7 @@ def sine_tasks(
             rate=FINE_RATE if name == "sdf" and errors["sdf"] > FINE else RATE,
             price=PRICES[name],
             budget=budgets.get(name, 0.0),
+            reviews=effort.reviews if name == "sdf" else 0,
         )
         tasks.append(_task(problem.sets, name, spec, schedule))
     return tasks

@@ -54,6 +54,7 @@ class Schedule:
     band    frequencies that the first layer starts with, relative to SIREN's
     last    rate of the last layer, relative to the others'
     budget  bits that all weights together take; 0: as the price says
+    reviews how often samples of a signed distance are sought that are on the wrong side
     """
 
     steps: int
@@ -64,6 +65,7 @@ class Schedule:
     band: float = 1.0
     last: float = 1.0
     budget: float = 0.0
+    reviews: int = 0
 
 
 @dataclass(frozen=True)

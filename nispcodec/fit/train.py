@@ -11,6 +11,7 @@ import torch
 from torch import Tensor
 
 from nispcodec.errors import FitError
+from nispcodec.fit.misses import MEMORY, reaches
 from nispcodec.fit.module import Module
 from nispcodec.fit.prune import Mask
 from nispcodec.fit.quantise import FIRST_BITS, Quantiser
@@ -25,6 +26,7 @@ WARM_UP = 0.15
 CLIP = 1.0
 TINY = 1e-12
 CHECKS = 40
+REVIEWED = 20_000
 CHUNK = 25
 QUANTISED = 0.5
 HARD = 0.9
@@ -64,7 +66,9 @@ class _Run:
         self.generator = torch.Generator().manual_seed(seed)
         self.module = Module(task.spec, self.generator, device, task.schedule.band)
         self.held_out = Batch.of(task.held_out, device)
-        self.batches = _batches(Batch.of(task.samples, device), task.schedule, self.generator)
+        self.samples = Batch.of(task.samples, device)
+        self.reached = torch.zeros(len(self.samples))
+        self.batches = self._batches()
         self.rate = task.schedule.rate
         self.retries = 0
         self.move = self._optimiser()
@@ -95,6 +99,8 @@ class _Run:
         schedule = self.task.schedule
         if schedule.price and step in (_at(QUANTISED, schedule), _at(HARD, schedule)):
             self._harden()
+        if step in _reviews(schedule):
+            self._review()
         loss = self.task.loss(self.module, next(self.batches))
         self.module.weights.grad = None
         loss.backward()  # type: ignore[no-untyped-call]
@@ -113,6 +119,33 @@ class _Run:
         else:
             self.module.settle()
         self.best_error, self.best = math.inf, self._weights()
+
+    @torch.no_grad()
+    def _review(self) -> None:
+        """From now on draw the samples on the wrong side more often, most those that cost most."""
+        samples = self.samples
+        parts = torch.split(samples.points, REVIEWED)
+        field = torch.cat([self.module(part)[:, 0] for part in parts])
+        reach = reaches(*(each.cpu().numpy() for each in (samples.points, samples.sdf, field)))
+        self.reached = torch.maximum(MEMORY * self.reached, torch.from_numpy(reach))
+        self.batches = self._batches()
+
+    def _batches(self) -> Iterator[Batch]:
+        """Rounds of all samples and, where some reach, as many again drawn by their reach.
+
+        In random order; a batch never straddles two rounds.
+        """
+        count, generator = len(self.samples), self.generator
+        size = min(self.task.schedule.batch, count)
+        while True:
+            order = torch.randperm(count, generator=generator)
+            if bool(self.reached.any()):
+                again = torch.multinomial(self.reached, count, True, generator=generator)
+                both = torch.cat([order, again])
+                order = both[torch.randperm(len(both), generator=generator)]
+            order = order.to(self.samples.points.device)
+            for start in range(0, len(order) - size + 1, size):
+                yield self.samples[order[start : start + size]]
 
     def _charge(self, quantiser: Quantiser, learn: bool) -> None:
         schedule = self.task.schedule
@@ -182,6 +215,11 @@ class _Run:
             tensor.copy_(kept)
 
 
+def _reviews(schedule: Schedule) -> range:
+    every = schedule.steps // (schedule.reviews + 1)
+    return range(every, every * schedule.reviews + 1, every) if every else range(0)
+
+
 def _at(share: float, schedule: Schedule) -> int:
     return int(share * schedule.steps)
 
@@ -192,12 +230,3 @@ def _shape(schedule: Schedule, step: int) -> float:
         return 1.0
     cosine = 0.5 * (1 + math.cos(math.pi * step / schedule.steps))
     return min(1.0, (step + 1) / (WARM_UP * schedule.steps)) * (0.01 + 0.99 * cosine)
-
-
-def _batches(samples: Batch, schedule: Schedule, generator: torch.Generator) -> Iterator[Batch]:
-    """Every sample once in random order, again and again; a batch never straddles two rounds."""
-    size = min(schedule.batch, len(samples))
-    while True:
-        order = torch.randperm(len(samples), generator=generator).to(samples.points.device)
-        for start in range(0, len(samples) - size + 1, size):
-            yield samples[order[start : start + size]]
