@@ -43,7 +43,7 @@ SDF_LAST = 0.3
 """Relative rate of the SDF's last layer: its bias moves the whole field at once."""
 
 PROBE_WIDTH = 24
-PROBE_STEPS = {"sdf": 1000, "chart": 600, "uv": 600}
+PROBE_STEPS = {"sdf": 1000, "chart": 600, "uv": 1000}
 
 
 @dataclass(frozen=True)
@@ -62,7 +62,7 @@ class Effort:
 
 EFFORTS = {
     "fast": Effort(9.0, 0.8, 3, PROBE_BAND),
-    "balanced": Effort(55.0, 1.0, 9),
+    "balanced": Effort(53.0, 1.0, 9),
     "best": Effort(330.0, 1.2, 15),
 }
 

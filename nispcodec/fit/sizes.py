@@ -39,9 +39,9 @@ class Model:
 
 
 MODELS = {
-    "sdf": Model(44, 1.0e-3, 1.0, 20, 48),
+    "sdf": Model(40, 1.0e-3, 1.0, 20, 40),
     "chart": Model(26, 0.05, 0.3, 16, 56),
-    "uv": Model(24, 2.2e-3, 0.6, 20, 56),
+    "uv": Model(24, 1.5e-3, 0.7, 16, 56),
 }
 
 FINE, FINE_WIDTH = 1.8e-3, 72
