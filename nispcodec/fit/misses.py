@@ -37,5 +37,6 @@ def _to_nearest(known: Floats, points: Floats) -> Floats:
     """Distances of points to the nearest known one, `REACH` if there is none so near."""
     if not len(known) or not len(points):
         return np.full(len(points), REACH, dtype=np.float32)
-    distance, _ = cKDTree(known).query(points, distance_upper_bound=REACH)
+    tree = cKDTree(known, balanced_tree=False, compact_nodes=False)  # asked once: quick to build
+    distance, _ = tree.query(points, distance_upper_bound=REACH)
     return np.minimum(distance, REACH).astype(np.float32)

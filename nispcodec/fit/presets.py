@@ -62,7 +62,7 @@ class Effort:
 
 EFFORTS = {
     "fast": Effort(9.0, 0.8, 3, PROBE_BAND),
-    "balanced": Effort(53.0, 1.0, 9),
+    "balanced": Effort(46.0, 1.0, 9),
     "best": Effort(330.0, 1.2, 15),
 }
 
