@@ -2,8 +2,9 @@
 
     python -m benchmarks.readme --bench build/bench
 
-Keeps what `python -m benchmarks` left in that folder as benchmarks/results/bench.{json,csv} and
-docs/rate_distortion.png; without --bench, tables are of what was kept before.
+The tables are of what `benchmarks.main_job` and `benchmarks.duel` found. --bench keeps what
+`python -m benchmarks` left in that folder as benchmarks/results/bench.{json,csv} and
+docs/rate_distortion.png: of these come the sizes of the other codecs.
 """
 
 from __future__ import annotations
@@ -15,6 +16,8 @@ from typing import Any
 
 import click
 
+from benchmarks.duel import PRECISE
+from benchmarks.duel import RESULTS as DUEL
 from benchmarks.main_job import RESULTS
 from nispcodec.output import write_atomic
 
@@ -28,11 +31,10 @@ HEAD = (
 PEERS_BEGIN = "<!-- peers: python -m benchmarks.readme -->\n"
 PEERS_END = "<!-- end of peers -->\n"
 PEERS_HEAD = (
-    "| kB, no textures | `.nisp` | simplify + Draco, as near | and UVs as near "
+    "| kB, no textures | `.nisp` | simplify + Draco, as near | and UVs as near | ours / theirs "
     "| Draco 11/10 bits | gltfpack -cc 12/12 bits | OBJ.xz, 4 digits |\n"
-    "|---|---|---|---|---|---|---|\n"
+    "|---|---|---|---|---|---|---|---|\n"
 )
-PRESET = "balanced"
 OTHERS = (("draco", "11 10"), ("gltfpack", "cc 12 12"), ("obj_xz", "4 digits"))
 BENCH, TABLE = Path("benchmarks/results/bench.json"), Path("benchmarks/results/bench.csv")
 PLOT = Path("docs/rate_distortion.png")
@@ -65,27 +67,36 @@ def measured() -> str:
 
 
 def compared() -> str:
-    """The table of `python -m benchmarks`: ours with the default preset beside the others."""
-    if not BENCH.exists():
-        return ""
-    results = json.loads(BENCH.read_text(encoding="utf-8"))
-    with TABLE.open(encoding="utf-8", newline="") as file:
-        rows = list(csv.DictReader(file))
-    duels = results["summary"]["against_rival"]
-    lines = [duel_row(name, found, rows) for name, found in sorted(duels.items())]
-    return PEERS_HEAD + "".join(lines) + f"\nAt commit {results['commit']}.\n"
+    """The table of `benchmarks.duel`, and the sizes of other codecs that have been measured."""
+    found = json.loads(DUEL.read_text(encoding="utf-8"))
+    rows: list[dict[str, str]] = []
+    if TABLE.exists():
+        with TABLE.open(encoding="utf-8", newline="") as file:
+            rows = list(csv.DictReader(file))
+    lines = [duel_row(name, duel, rows) for name, duel in sorted(found["assets"].items())]
+    return PEERS_HEAD + "".join(lines) + means_line(found["means"]["distance and uv"])
 
 
-def duel_row(name: str, duels: list[dict[str, Any]], rows: list[dict[str, str]]) -> str:
-    """One asset's line: sizes in kB, `none` where no setting of the rival is as good."""
-    ours = next((duel for duel in duels if duel["setting"] == PRESET), None)
-    if ours is None:
-        return f"| {name} | not measured | | | | | |\n"
-    rival = ours["rival_bytes"]
-    others = [size_of(rows, name, *which) for which in OTHERS]
-    sizes = [ours["bytes"], rival["distance"], rival["distance and uv"], *others]
-    cells = ["none" if size is None else f"{size / 1e3:,.1f}" for size in sizes]
+def means_line(means: dict[str, float]) -> str:
+    """The geometric means of our share."""
+    return (
+        f"\nOurs / theirs in the geometric mean: {means['four']:.2f} over "
+        f"{', '.join(PRECISE)}; {means['all']:.2f} over all.\n"
+    )
+
+
+def duel_row(name: str, duel: dict[str, Any], rows: list[dict[str, str]]) -> str:
+    """One asset's line: sizes in kB, a dash where there is none or it is not measured."""
+    rival, share = duel["rival_bytes"], duel["share"]["distance and uv"]
+    sizes = [duel["bytes"], rival["distance"], rival["distance and uv"]]
+    cells = [kilobytes(size) for size in sizes] + ["–" if share is None else f"{share:.2f}"]
+    cells += [kilobytes(size_of(rows, name, *which)) for which in OTHERS]
     return f"| {name} | " + " | ".join(cells) + " |\n"
+
+
+def kilobytes(size: int | None) -> str:
+    """A size to a hundred bytes."""
+    return "–" if size is None else f"{size / 1e3:,.1f}"
 
 
 def size_of(rows: list[dict[str, str]], asset: str, codec: str, setting: str) -> int | None:

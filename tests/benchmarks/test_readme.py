@@ -8,9 +8,20 @@ def test_only_what_stands_between_the_markers_changes() -> None:
     assert replaced(text, "<a>\n", "<b>\n", "new\n") == "before\n<a>\nnew\n<b>\nafter <b>\n"
 
 
-def test_a_line_says_none_where_the_rival_is_never_as_good() -> None:
-    rival = {"distance": 4000, "uv": None, "distance and uv": None}
-    duels = [{"setting": "balanced", "bytes": 9500, "rival_bytes": rival}]
+def test_a_line_has_a_dash_where_the_rival_is_never_as_good() -> None:
+    duel = {
+        "bytes": 9500,
+        "rival_bytes": {"distance": 4000, "distance and uv": None},
+        "share": {"distance": 2.375, "distance and uv": None},
+    }
     rows = [{"asset": "a", "codec": "draco", "setting": "11 10", "bytes": "12345"}]
-    assert duel_row("a", duels, rows) == "| a | 9.5 | 4.0 | none | 12.3 | none | none |\n"
-    assert "not measured" in duel_row("a", [], rows)
+    assert duel_row("a", duel, rows) == "| a | 9.5 | 4.0 | – | – | 12.3 | – | – |\n"
+
+
+def test_a_line_says_what_share_of_the_rival_we_are() -> None:
+    duel = {
+        "bytes": 9500,
+        "rival_bytes": {"distance": 19000, "distance and uv": 19000},
+        "share": {"distance": 0.5, "distance and uv": 0.5},
+    }
+    assert duel_row("a", duel, []) == "| a | 9.5 | 19.0 | 19.0 | 0.50 | – | – | – |\n"
