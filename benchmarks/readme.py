@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import csv
 import json
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
@@ -31,11 +32,13 @@ HEAD = (
 PEERS_BEGIN = "<!-- peers: python -m benchmarks.readme -->\n"
 PEERS_END = "<!-- end of peers -->\n"
 PEERS_HEAD = (
-    "| kB, no textures | `.nisp` | simplify + Draco, as near | and UVs as near | ours / theirs "
-    "| Draco 11/10 bits | gltfpack -cc 12/12 bits | OBJ.xz, 4 digits |\n"
-    "|---|---|---|---|---|---|---|---|\n"
-)
-OTHERS = (("draco", "11 10"), ("gltfpack", "cc 12 12"), ("obj_xz", "4 digits"))
+    "kB, no textures", "`.nisp`", "simplify + Draco, as near", "and UVs as near", "ours / theirs",
+)  # fmt: skip
+OTHERS = {
+    "Draco 11/10 bits": ("draco", "11 10"),
+    "gltfpack -cc 12/12 bits": ("gltfpack", "cc 12 12"),
+    "OBJ.xz, 4 digits": ("obj_xz", "4 digits"),
+}
 BENCH, TABLE = Path("benchmarks/results/bench.json"), Path("benchmarks/results/bench.csv")
 PLOT = Path("docs/rate_distortion.png")
 
@@ -43,7 +46,7 @@ PLOT = Path("docs/rate_distortion.png")
 def row(name: str, record: dict[str, Any]) -> str:
     """One asset's line."""
     metrics = record["metrics"]
-    cells = [
+    texts = [
         name,
         f"{record['faces']:,}",
         f"{record['report']['input_bytes']['mesh'] / 1e3:,.0f} kB",
@@ -54,7 +57,7 @@ def row(name: str, record: dict[str, Any]) -> str:
         f"{metrics['charts']['accuracy']:.3f}",
         f"{metrics['color']['psnr']:.1f} dB",
     ]
-    return "| " + " | ".join(cells) + " |\n"
+    return cells(texts)
 
 
 def measured() -> str:
@@ -73,8 +76,14 @@ def compared() -> str:
     if TABLE.exists():
         with TABLE.open(encoding="utf-8", newline="") as file:
             rows = list(csv.DictReader(file))
-    lines = [duel_row(name, duel, rows) for name, duel in sorted(found["assets"].items())]
-    return PEERS_HEAD + "".join(lines) + means_line(found["means"]["distance and uv"])
+    duels = sorted(found["assets"].items())
+    others = [title for title in OTHERS if any(size_of(rows, name, title) for name, _ in duels)]
+    lines = [cells(PEERS_HEAD + tuple(others)), cells(["---"] * (len(PEERS_HEAD) + len(others)))]
+    lines += [
+        cells([*duel_cells(name, duel), *(kilobytes(size_of(rows, name, each)) for each in others)])
+        for name, duel in duels
+    ]
+    return "".join(lines) + means_line(found["means"]["distance and uv"])
 
 
 def means_line(means: dict[str, float]) -> str:
@@ -85,13 +94,16 @@ def means_line(means: dict[str, float]) -> str:
     )
 
 
-def duel_row(name: str, duel: dict[str, Any], rows: list[dict[str, str]]) -> str:
-    """One asset's line: sizes in kB, a dash where there is none or it is not measured."""
+def duel_cells(name: str, duel: dict[str, Any]) -> list[str]:
+    """One asset: sizes in kB, a dash where the rival is never as good."""
     rival, share = duel["rival_bytes"], duel["share"]["distance and uv"]
     sizes = [duel["bytes"], rival["distance"], rival["distance and uv"]]
-    cells = [kilobytes(size) for size in sizes] + ["–" if share is None else f"{share:.2f}"]
-    cells += [kilobytes(size_of(rows, name, *which)) for which in OTHERS]
-    return f"| {name} | " + " | ".join(cells) + " |\n"
+    return [name, *map(kilobytes, sizes), "–" if share is None else f"{share:.2f}"]
+
+
+def cells(texts: Iterable[str]) -> str:
+    """A line of a table."""
+    return "| " + " | ".join(texts) + " |\n"
 
 
 def kilobytes(size: int | None) -> str:
@@ -99,8 +111,9 @@ def kilobytes(size: int | None) -> str:
     return "–" if size is None else f"{size / 1e3:,.1f}"
 
 
-def size_of(rows: list[dict[str, str]], asset: str, codec: str, setting: str) -> int | None:
-    """Bytes of one measured point."""
+def size_of(rows: list[dict[str, str]], asset: str, title: str) -> int | None:
+    """Bytes of one measured point of `OTHERS`."""
+    codec, setting = OTHERS[title]
     wanted = {"asset": asset, "codec": codec, "setting": setting}
     found = [row for row in rows if wanted.items() <= row.items() and row["bytes"]]
     return int(found[0]["bytes"]) if found else None

@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from benchmarks.readme import duel_row, replaced
+from benchmarks.readme import duel_cells, replaced, size_of
 
 
 def test_only_what_stands_between_the_markers_changes() -> None:
@@ -14,8 +14,7 @@ def test_a_line_has_a_dash_where_the_rival_is_never_as_good() -> None:
         "rival_bytes": {"distance": 4000, "distance and uv": None},
         "share": {"distance": 2.375, "distance and uv": None},
     }
-    rows = [{"asset": "a", "codec": "draco", "setting": "11 10", "bytes": "12345"}]
-    assert duel_row("a", duel, rows) == "| a | 9.5 | 4.0 | – | – | 12.3 | – | – |\n"
+    assert duel_cells("a", duel) == ["a", "9.5", "4.0", "–", "–"]
 
 
 def test_a_line_says_what_share_of_the_rival_we_are() -> None:
@@ -24,4 +23,10 @@ def test_a_line_says_what_share_of_the_rival_we_are() -> None:
         "rival_bytes": {"distance": 19000, "distance and uv": 19000},
         "share": {"distance": 0.5, "distance and uv": 0.5},
     }
-    assert duel_row("a", duel, []) == "| a | 9.5 | 19.0 | 19.0 | 0.50 | – | – | – |\n"
+    assert duel_cells("a", duel) == ["a", "9.5", "19.0", "19.0", "0.50"]
+
+
+def test_other_codecs_are_shown_where_they_are_measured() -> None:
+    rows = [{"asset": "a", "codec": "draco", "setting": "11 10", "bytes": "12345"}]
+    assert size_of(rows, "a", "Draco 11/10 bits") == 12345
+    assert size_of(rows, "b", "Draco 11/10 bits") is None
