@@ -47,6 +47,7 @@ def train(
     """Fit one network; `core` is held while computing, so that tasks share the cores fairly.
 
     What a `mask` prunes is 0 from the first step to the last; initial weights depend on the seed.
+    After a review, half of what is drawn is samples on the wrong side (`nispcodec.fit.misses`).
 
     A run whose held-out error explodes goes on from its best weights at half the rate. With a
     price of bits the network computes with rounded weights from `QUANTISED` of the steps on, learns
