@@ -11,12 +11,12 @@ import torch
 from torch import Tensor
 
 from nispcodec.errors import FitError
-from nispcodec.fit.misses import MEMORY, reaches
 from nispcodec.fit.module import Module
 from nispcodec.fit.prune import Mask
 from nispcodec.fit.quantise import FIRST_BITS, Quantiser
 from nispcodec.fit.soap import Soap
 from nispcodec.fit.task import Batch, Schedule, Task
+from nispcodec.mesh.misses import reaches
 from nispcodec.network import Network
 from nispcodec.progress import Listener, Progress
 
@@ -27,6 +27,9 @@ CLIP = 1.0
 TINY = 1e-12
 CHECKS = 40
 REVIEWED = 20_000
+MEMORY = 0.7
+"""Share of a sample's weight that is left at the next review."""
+
 CHUNK = 25
 QUANTISED = 0.5
 HARD = 0.9
@@ -47,7 +50,7 @@ def train(
     """Fit one network; `core` is held while computing, so that tasks share the cores fairly.
 
     What a `mask` prunes is 0 from the first step to the last; initial weights depend on the seed.
-    After a review, half of what is drawn is samples on the wrong side (`nispcodec.fit.misses`).
+    After a review, half of what is drawn is samples on the wrong side (`nispcodec.mesh.misses`).
 
     A run whose held-out error explodes goes on from its best weights at half the rate. With a
     price of bits the network computes with rounded weights from `QUANTISED` of the steps on, learns

@@ -13,6 +13,7 @@ import pytest
 import torch
 from torch import Tensor
 
+from nispcodec.decode.evaluate import evaluate
 from nispcodec.errors import FitError
 from nispcodec.fit import parallel
 from nispcodec.fit.losses import chart_error, chart_loss, distance_error, relative_distance_loss
@@ -175,3 +176,28 @@ def test_soap_finds_the_minimum_of_a_badly_scaled_quadratic() -> None:
         weights.grad = (weights.detach() - target) * scales**2
         soap.step(0.05 * (1 - step / 600))
     assert torch.allclose(weights, target, atol=0.02)
+
+
+def test_reviews_bring_back_a_part_that_few_samples_show() -> None:
+    """Of 8000 samples eight lie in the small ball."""
+
+    def small(points: np.ndarray) -> np.ndarray:
+        return np.linalg.norm(points - [0.75, 0, 0], axis=1).astype(np.float32) - np.float32(0.13)
+
+    def two_balls(count: int, seed: int) -> SampleSet:
+        samples = ball_samples(count, seed)
+        return replace(samples, sdf=np.minimum(samples.sdf, small(samples.points)))
+
+    def share_found(reviews: int) -> float:
+        schedule = replace(task.schedule, reviews=reviews)
+        network = run(replace(task, schedule=schedule))
+        points = task.samples.points[small(task.samples.points) < 0]
+        return float((evaluate(network, points)[:, 0] < 0).mean())
+
+    task = replace(
+        sdf_task(400),
+        spec=NetworkSpec((16, 16), 1, w0=12.0),
+        samples=two_balls(8000, 0),
+        held_out=two_balls(500, 1),
+    )
+    assert share_found(reviews=4) > 0.5 > share_found(reviews=0)

@@ -15,9 +15,6 @@ Floats = NDArray[np.float32]
 REACH = 0.075
 """Mistakes that reach further (normalised frame) weigh no more."""
 
-MEMORY = 0.7
-"""Share of a sample's weight that is left at the next review."""
-
 
 def reaches(points: Floats, sdf: Floats, field: Floats) -> Floats:
     """How far every mistake reaches, up to `REACH`: 0 where `field` has the sign of `sdf`.

@@ -2,17 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from nispcodec.decode.evaluate import evaluate
-from nispcodec.fit.misses import REACH, reaches
-from nispcodec.mesh.samples import SampleSet
-from nispcodec.network import NetworkSpec
-from tests.fit.test_train import ball_samples, run, sdf_task
+from nispcodec.mesh.misses import REACH, reaches
 
 
 def grid() -> np.ndarray:
@@ -59,28 +53,3 @@ def test_reaches_are_of_mistakes_only_and_bounded(count: int, seed: int) -> None
     assert found.shape == (count,)
     assert ((found > 0) == ((sdf < 0) != (field < 0))).all()
     assert (found <= np.float32(REACH)).all()
-
-
-def test_reviews_bring_back_a_part_that_few_samples_show() -> None:
-    """Of 8000 samples eight lie in the small ball."""
-
-    def small(points: np.ndarray) -> np.ndarray:
-        return ball(points, 0.75, 0.13)
-
-    def two_balls(count: int, seed: int) -> SampleSet:
-        samples = ball_samples(count, seed)
-        return replace(samples, sdf=np.minimum(samples.sdf, small(samples.points)))
-
-    def share_found(reviews: int) -> float:
-        schedule = replace(task.schedule, reviews=reviews)
-        network = run(replace(task, schedule=schedule))
-        points = task.samples.points[small(task.samples.points) < 0]
-        return float((evaluate(network, points)[:, 0] < 0).mean())
-
-    task = replace(
-        sdf_task(400),
-        spec=NetworkSpec((16, 16), 1, w0=12.0),
-        samples=two_balls(8000, 0),
-        held_out=two_balls(500, 1),
-    )
-    assert share_found(reviews=4) > 0.5 > share_found(reviews=0)
