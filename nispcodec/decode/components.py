@@ -23,7 +23,7 @@ from nispcodec.network import Network
 # pieces are mostly scraps of real detail that the fit could not hold: only specks are dropped.
 STEEP, SMALL_SHARE = 1.7, 0.05
 FLAT, SPECK_AREA = 0.4, 2e-3
-HOLLOW_SHARE = 0.01
+HOLLOW_SHARE = 0.03
 SOME = 20_000
 
 Integers = NDArray[np.int32]
