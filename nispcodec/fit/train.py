@@ -73,6 +73,7 @@ class _Run:
         self.samples = Batch.of(task.samples, device)
         self.reached = torch.zeros(len(self.samples))
         self.batches = self._batches()
+        self.reviews = _reviews(task.schedule)
         self.rate = task.schedule.rate
         self.retries = 0
         self.move = self._optimiser()
@@ -103,7 +104,7 @@ class _Run:
         schedule = self.task.schedule
         if schedule.price and step in (_at(QUANTISED, schedule), _at(HARD, schedule)):
             self._harden()
-        if step in _reviews(schedule):
+        if step in self.reviews:
             self._review()
         loss = self.task.loss(self.module, next(self.batches))
         self.module.weights.grad = None
