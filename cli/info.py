@@ -114,6 +114,8 @@ def _network(network: Network) -> dict[str, Any]:
         facts["conditioning"] = spec.conditioning
     if spec.mirror:
         facts["mirror"] = "".join(compress("xyz", spec.mirrored))
+    if spec.sided:
+        facts["sided"] = "".join("xyz"[axis] for axis in spec.sided)
     return facts
 
 

@@ -40,7 +40,8 @@ class NetworkSpec:
     activation   "sine": sin(w0 (W x + b)); "relu": max(0, W x + b)
     output       activation of the last layer
     mirror       bit 0, 1, 2: of x, y, z the absolute value enters, before any encoding, so that the
-                 network holds one half and its answers are symmetric about the plane
+                 network holds one half and its answers are symmetric about the plane; bit 3, 4, 5:
+                 x, y, z itself follows as a further coordinate, for what differs on the two sides
     """
 
     hidden: tuple[int, ...]
@@ -71,7 +72,10 @@ class NetworkSpec:
         _within("embedding", self.embedding, int(embedded), 64 if embedded else 0)
         if not 0 < self.w0 <= 1000:
             raise FormatError("network", "w0", "a number in (0, 1000]", self.w0)
-        _within("mirror", self.mirror, 0, 7)
+        _within("mirror", self.mirror, 0, 63)
+        if self.mirror >> 3 & ~self.mirror:
+            expected = "bits 3, 4, 5 only beside bits 0, 1, 2"
+            raise FormatError("network", "mirror", expected, self.mirror)
 
     @property
     def mirrored(self) -> tuple[bool, bool, bool]:
@@ -79,9 +83,14 @@ class NetworkSpec:
         return bool(self.mirror & 1), bool(self.mirror & 2), bool(self.mirror & 4)
 
     @property
+    def sided(self) -> tuple[int, ...]:
+        """The axes of which the coordinate itself follows its absolute value."""
+        return tuple(axis for axis in range(3) if self.mirror >> 3 + axis & 1)
+
+    @property
     def inputs(self) -> int:
         """Width of the first layer's input, after encoding and conditioning."""
-        coordinates = 3 + (self.conditioning == "scalar")
+        coordinates = 3 + len(self.sided) + (self.conditioning == "scalar")
         encoded = coordinates * (2 * self.levels if self.encoding == "fourier" else 1)
         return encoded + self.embedding
 

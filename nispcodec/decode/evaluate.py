@@ -145,13 +145,14 @@ class _Forward:
             slope = layer[:, :-1].T @ (slope * steep)
         slope = self._through_encoding(encoded[:-1], slope)
         if self.spec.mirror:
-            slope = np.where(self.mirrored, slope * np.sign(points.T), slope)
+            slope = self._through_mirror(points.T, slope)
         return value[0], slope.T
 
     def _input(self, points: Floats, charts: Charts | None) -> Floats:
         coordinates = points.T
         if self.spec.mirror:
-            coordinates = np.where(self.mirrored, np.abs(coordinates), coordinates)
+            folded = np.where(self.mirrored, np.abs(coordinates), coordinates)
+            coordinates = np.vstack([folded, coordinates[list(self.spec.sided)]])
         if self.spec.conditioning == "scalar" and charts is not None:
             scalar = (2 * charts + 1).astype(np.float32) / np.float32(self.spec.charts) - 1
             coordinates = np.vstack([coordinates, scalar.astype(np.float32)])
@@ -166,11 +167,16 @@ class _Forward:
     def _through_encoding(self, encoded: Floats, slope: Floats) -> Floats:
         if self.spec.encoding == "identity":
             return slope
-        shape = (3, self.spec.levels, 2, -1)
+        shape = (-1, self.spec.levels, 2, slope.shape[1])
         waves, slopes = encoded.reshape(shape), slope.reshape(shape)
         turned = slopes[:, :, 0] * waves[:, :, 1] - slopes[:, :, 1] * waves[:, :, 0]
         result: Floats = (turned * self._frequencies[:, None]).sum(axis=1)
         return result
+
+    def _through_mirror(self, coordinates: Floats, slope: Floats) -> Floats:
+        folded = np.where(self.mirrored, slope[:3] * np.sign(coordinates), slope[:3])
+        folded[list(self.spec.sided)] += slope[3:]
+        return folded
 
     @property
     def _frequencies(self) -> Floats:

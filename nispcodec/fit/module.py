@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
 from itertools import pairwise
 
 import numpy as np
@@ -19,12 +18,11 @@ from nispcodec.network import Network, NetworkSpec, Weights
 class Module:
     """A network under training.
 
-    All its numbers are one vector, so that rounding, clipping and charging are one operation each.
-    In it each layer is one matrix [W | b], so that a preconditioner sees weight and bias together,
-    and an embedding is the last matrix. Sine layers hold w0 W and w0 b, which saves a pass over the
-    activations. With a quantiser it computes with rounded weights, as the file will hold them.
-    Once pruned, `kept` is 1 or 0 for each number, and what is pruned is 0 after every `hold`.
-    `band` scales the frequencies that it starts with.
+    All its numbers are one vector, in file order, so that rounding, clipping and charging are one
+    operation each. Sine layers hold w0 W and w0 b, which saves a pass over the activations. With a
+    quantiser it computes with rounded weights, as the file will hold them. Once pruned, `kept` is 1
+    or 0 for each number, and what is pruned is 0 after every `hold`. `band` scales the frequencies
+    that it starts with.
     """
 
     quantiser: Quantiser | None = None
@@ -34,45 +32,57 @@ class Module:
         self, spec: NetworkSpec, generator: torch.Generator, device: str, band: float = 1.0
     ) -> None:
         self.spec = spec
-        matrices = _initial_matrices(spec, generator)
-        matrices[0] *= band
-        table = torch.randn(spec.charts, max(spec.embedding, 1), generator=generator)
-        parts = [*matrices, table] if spec.embedding else matrices
+        self._shapes = spec.shapes
+        self._counts = [math.prod(shape) for shape in self._shapes.values()]
+        first = _initial(spec, generator)
+        first["weight.0"] *= band
+        first["bias.0"] *= band
+        if spec.encoding == "identity":
+            first["weight.0"][:, 3 : 3 + len(spec.sided)] = 0
         self.mirrored = torch.tensor(spec.mirrored, device=device)
-        self.shapes = [(part.shape[0], part.shape[1]) for part in parts]
-        self.weights = torch.cat([part.flatten() for part in parts]).to(device).requires_grad_()
+        flat = [first[name].flatten() for name in self._shapes]
+        self.weights = torch.cat(flat).to(device).requires_grad_()
 
     @property
-    def scales(self) -> list[float]:
-        """What each matrix is a multiple of: w0 for sine layers."""
-        sine = self.spec.w0 if self.spec.activation == "sine" else 1.0
-        return [sine] * len(self.spec.hidden) + [1.0] * (1 + (self.spec.embedding > 0))
+    def scales(self) -> dict[str, float]:
+        """What each tensor is a multiple of: w0 in sine layers."""
+        w0 = self.spec.w0 if self.spec.activation == "sine" else 1.0
+        hidden = {f"{part}.{i}" for i in range(len(self.spec.hidden)) for part in _PARTS}
+        return {name: w0 if name in hidden else 1.0 for name in self.spec.shapes}
 
-    def rates(self, last: float) -> list[float]:
-        """Learning rate of each matrix relative to the schedule's; `last` is the last layer's."""
-        rates = self.scales
-        rates[len(self.spec.hidden)] = last
-        return rates
+    def matrices(self, last: float) -> list[tuple[Tensor, float]]:
+        """What a preconditioner sees together, and its rate relative to the schedule's.
+
+        Of each layer [W | b] and the embedding: where its numbers are in the vector. `last` is the
+        rate of the last layer.
+        """
+        places = self._parts(torch.arange(len(self.weights)))
+        count, scales = len(self.spec.hidden), self.scales
+        matrices = [
+            (torch.cat([places[f"weight.{i}"], places[f"bias.{i}"][:, None]], dim=1), rate)
+            for i, rate in enumerate([*(scales[f"weight.{i}"] for i in range(count)), last])
+        ]
+        return matrices + [(places[name], 1.0) for name in places if name == "embedding"]
 
     def __call__(self, points: Tensor, charts: Tensor | None = None) -> Tensor:
         """(n, 3) points, (n,) chart numbers -> (n, outputs)."""
         used = self.weights if self.kept is None else self.weights * self.kept
         used = used if self.quantiser is None else self.quantiser.rounded(used)
-        parts = _matrices(used, self.shapes)
-        layers = parts[: len(self.spec.hidden) + 1]
-        hidden = self._encoded(points, charts, parts[-1])
+        parts = self._parts(used)
+        hidden = self._encoded(points, charts, parts.get("embedding"))
         activation = torch.sin if self.spec.activation == "sine" else functional.relu
-        for matrix in layers[:-1]:
-            hidden = activation(_affine(matrix, hidden))
-        return _OUTPUTS[self.spec.output](_affine(layers[-1], hidden))
+        last = len(self.spec.hidden)
+        for i in range(last):
+            hidden = activation(functional.linear(hidden, parts[f"weight.{i}"], parts[f"bias.{i}"]))
+        output = functional.linear(hidden, parts[f"weight.{last}"], parts[f"bias.{last}"])
+        return _OUTPUTS[self.spec.output](output)
 
     def prune(self, mask: Mask) -> None:
         """Keep what a mask keeps; the rest is 0 from now on."""
         self.kept = torch.ones_like(self.weights, requires_grad=False)
-        parts = _matrices(self.kept, self.shapes)
-        for name, index, columns in self._named():
+        for name, part in self._parts(self.kept).items():
             if name in mask:
-                parts[index][:, columns] = torch.from_numpy(mask[name])
+                part.copy_(torch.from_numpy(mask[name]))
         self.hold()
 
     @torch.no_grad()
@@ -89,61 +99,46 @@ class Module:
         """The weights as they are now; with a quantiser each a symbol times its tensor's step."""
         tensors: dict[str, Weights] = {}
         steps: dict[str, float] = {}
-        parts = _matrices(self.weights.detach(), self.shapes)
-        for group, (name, index, columns) in enumerate(self._named()):
-            values, scale = parts[index][:, columns], self.scales[index]
+        for group, (name, values) in enumerate(self._parts(self.weights.detach()).items()):
+            scale = self.scales[name]
             if self.quantiser is None:
                 tensors[name] = _array(values / scale)
                 continue
             step = self.quantiser.steps[group]
             steps[name] = snapped(step.item() / scale)
             tensors[name] = _array((values / step).round()) * np.float32(steps[name])
-        order = self.spec.shapes
-        return Network(self.spec, {name: tensors[name] for name in order}, steps)
+        return Network(self.spec, tensors, steps)
 
     def settle(self) -> None:
         """Hold the steps of the quantiser to those that a file can hold."""
         if self.quantiser is not None:
-            self.quantiser.settle([self.scales[index] for _, index, _ in self._named()])
+            self.quantiser.settle(list(self.scales.values()))
 
-    def _named(self) -> Iterator[tuple[str, int, slice | int]]:
-        """Name, matrix and columns of every tensor, as they follow each other in the vector."""
-        for layer in range(len(self.spec.hidden) + 1):
-            yield f"weight.{layer}", layer, slice(0, -1)
-            yield f"bias.{layer}", layer, -1
-        if self.spec.embedding:
-            yield "embedding", len(self.spec.hidden) + 1, slice(None)
+    def _parts(self, vector: Tensor) -> dict[str, Tensor]:
+        """The tensors that a vector like `weights` holds, as views."""
+        parts = zip(self._shapes.items(), torch.split(vector, self._counts), strict=True)
+        return {name: part.view(shape) for (name, shape), part in parts}
 
     def _groups(self) -> Tensor:
         """For each number of the vector that of its tensor."""
-        groups = torch.zeros(len(self.weights), dtype=torch.long, device=self.weights.device)
-        parts = _matrices(groups, self.shapes)
-        for group, (_, index, columns) in enumerate(self._named()):
-            parts[index][:, columns] = group
-        return groups
+        counts = torch.tensor(self._counts)
+        groups = torch.repeat_interleave(torch.arange(len(counts)), counts)
+        return groups.to(self.weights.device)
 
-    def _encoded(self, points: Tensor, charts: Tensor | None, table: Tensor) -> Tensor:
+    def _encoded(self, points: Tensor, charts: Tensor | None, table: Tensor | None) -> Tensor:
         spec = self.spec
         if spec.mirror:
-            points = torch.where(self.mirrored, points.abs(), points)
+            folded = torch.where(self.mirrored, points.abs(), points)
+            sides = [points[:, axis : axis + 1] for axis in spec.sided]
+            points = torch.cat([folded, *sides], dim=1)
         if spec.conditioning == "scalar" and charts is not None:
             scalar = (2 * charts[:, None] + 1) / spec.charts - 1
             points = torch.cat([points, scalar.to(points.dtype)], dim=1)
         if spec.encoding == "fourier":
             points = _fourier(points, spec.levels)
-        if spec.embedding and charts is not None:
+        if table is not None and charts is not None:
             points = torch.cat([points, functional.embedding(charts, table)], dim=1)
         return points
-
-
-def _matrices(vector: Tensor, shapes: list[tuple[int, int]]) -> list[Tensor]:
-    """The parts of a vector, as views of these shapes."""
-    parts = torch.split(vector, [rows * columns for rows, columns in shapes])
-    return [part.view(shape) for part, shape in zip(parts, shapes, strict=True)]
-
-
-def _affine(matrix: Tensor, values: Tensor) -> Tensor:
-    return torch.addmm(matrix[:, -1], values, matrix[:, :-1].T)
 
 
 def _fourier(points: Tensor, levels: int) -> Tensor:
@@ -153,16 +148,17 @@ def _fourier(points: Tensor, levels: int) -> Tensor:
     return torch.stack([angles.sin(), angles.cos()], dim=3).flatten(1)
 
 
-def _initial_matrices(spec: NetworkSpec, generator: torch.Generator) -> list[Tensor]:
-    widths = [spec.inputs, *spec.hidden, spec.outputs]
-    matrices = []
-    for layer, (fan_in, fan_out) in enumerate(pairwise(widths)):
+def _initial(spec: NetworkSpec, generator: torch.Generator) -> dict[str, Tensor]:
+    tensors: dict[str, Tensor] = {}
+    for layer, (fan_in, fan_out) in enumerate(pairwise([spec.inputs, *spec.hidden, spec.outputs])):
         bound = _weight_bound(spec, layer, fan_in)
         weight = torch.rand(fan_out, fan_in, generator=generator) * 2 * bound - bound
         bias_bound = bound if layer < len(spec.hidden) else 0.0
-        bias = torch.rand(fan_out, 1, generator=generator) * 2 * bias_bound - bias_bound
-        matrices.append(torch.cat([weight, bias], dim=1))
-    return matrices
+        bias = torch.rand(fan_out, generator=generator) * 2 * bias_bound - bias_bound
+        tensors |= {f"weight.{layer}": weight, f"bias.{layer}": bias}
+    if spec.embedding:
+        tensors["embedding"] = torch.randn(spec.charts, spec.embedding, generator=generator)
+    return tensors
 
 
 def _weight_bound(spec: NetworkSpec, layer: int, fan_in: int) -> float:
@@ -179,4 +175,5 @@ def _array(tensor: Tensor) -> Weights:
     return np.ascontiguousarray(tensor.detach().cpu().numpy(), dtype=np.float32)
 
 
+_PARTS = ("weight", "bias")
 _OUTPUTS = {"identity": lambda values: values, "tanh": torch.tanh, "sigmoid": torch.sigmoid}

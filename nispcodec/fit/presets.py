@@ -15,7 +15,7 @@ from nispcodec.fit.losses import (
 )
 from nispcodec.fit.sizes import FINE, LAYERS, Widths
 from nispcodec.fit.task import Schedule, Task
-from nispcodec.mesh.mirror import mirrored_axes
+from nispcodec.mesh.mirror import Mirrors, mirrors
 from nispcodec.mesh.samples import Sampler, SampleSet
 from nispcodec.mesh.training import TrainingSets
 from nispcodec.network import NetworkSpec
@@ -69,21 +69,18 @@ EFFORTS = {
 
 @dataclass(frozen=True)
 class Problem:
-    """What the networks of an asset are asked for; `mirror` as in `NetworkSpec`."""
+    """What the networks of an asset are asked for."""
 
     sets: TrainingSets
     charts: int
     has_uv: bool
-    mirror: int
+    mirrors: Mirrors
 
     @staticmethod
     def of(sampler: Sampler, sets: TrainingSets) -> Problem:
         """The problem of a sampled asset."""
         table = sampler.table
-        mirror = sum(
-            bit for bit, axis in zip((1, 2, 4), mirrored_axes(sampler), strict=True) if axis
-        )
-        return Problem(sets, len(table), bool(table.has_uv.any()), mirror)
+        return Problem(sets, len(table), bool(table.has_uv.any()), mirrors(sampler))
 
     @property
     def networks(self) -> tuple[str, ...]:
@@ -98,11 +95,16 @@ class Problem:
     def _spec(self, name: str, width: int) -> NetworkSpec:
         hidden = (width,) * LAYERS[name]
         if name == "sdf":
-            return NetworkSpec(hidden, 1, mirror=self.mirror)
+            return NetworkSpec(hidden, 1, mirror=self.mirrors.sdf)
         if name == "chart":
             return NetworkSpec(hidden, self.charts)
         return NetworkSpec(
-            hidden, 2, conditioning="embedding", charts=self.charts, embedding=EMBEDDING
+            hidden,
+            2,
+            conditioning="embedding",
+            charts=self.charts,
+            embedding=EMBEDDING,
+            mirror=self.mirrors.uv,
         )
 
 
@@ -150,7 +152,7 @@ def _schedule(name: str, steps: int, band: float) -> Schedule:
 def steps_in(seconds: float, spec: NetworkSpec, batch: int) -> int:
     """How many steps take so long on one core of 2.5 GHz (measured; a model of two terms)."""
     units = sum(spec.hidden) * batch / 2048
-    return max(1, round(seconds / (2.2e-3 + 2.4e-5 * units)))
+    return max(1, round(seconds / (1.1e-3 + 2.45e-5 * units)))
 
 
 def paper_tasks(charts: int, sets: TrainingSets) -> list[Task]:

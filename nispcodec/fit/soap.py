@@ -6,9 +6,8 @@ small matrix, so both sides are always preconditioned.
 
 from __future__ import annotations
 
-import math
+from collections.abc import Sequence
 from dataclasses import dataclass
-from itertools import groupby
 
 import torch
 from torch import Tensor
@@ -20,7 +19,7 @@ REFRESH_EVERY = 10
 
 @dataclass
 class _State:
-    """Matrices of one shape, stacked: moments and the two sides' covariances and eigenbases."""
+    """Of the padded stack: moments and the two sides' covariances and eigenbases."""
 
     mean: Tensor
     square: Tensor
@@ -31,39 +30,41 @@ class _State:
 
 
 class Soap:
-    """Minimises over a vector of weights that holds matrices of `shapes`, each with its own rate.
+    """Minimises over a vector of weights; `matrices` say where in it each matrix is, and its rate.
 
-    Call `step` after `backward`. Matrices that follow each other with equal shapes and rates are
-    moved in one operation.
+    Call `step` after `backward`. All matrices are moved in one operation, padded with zeros to the
+    largest: they are so small that the number of operations is what takes the time.
     """
 
-    def __init__(self, weights: Tensor, shapes: list[tuple[int, int]], rates: list[float]) -> None:
+    state: _State | None = None
+
+    def __init__(self, weights: Tensor, matrices: Sequence[tuple[Tensor, float]]) -> None:
         self.weights = weights
-        runs = [(key, len(list(run))) for key, run in groupby(zip(shapes, rates, strict=True))]
-        self.rates = [rate for (_, rate), _ in runs]
-        self.stacks = [(count, *shape) for (shape, _), count in runs]
-        self.states: list[_State] = []
+        rows, columns = (max(matrix.shape[side] for matrix, _ in matrices) for side in (0, 1))
+        places = torch.arange(len(matrices) * rows * columns).view(-1, rows, columns)
+        order = torch.empty(len(weights), dtype=torch.long)
+        for place, (matrix, _) in zip(places, matrices, strict=True):
+            order[matrix.flatten()] = place[: matrix.shape[0], : matrix.shape[1]].flatten()
+        self.order = order.to(weights.device)
+        self.stack = torch.zeros(len(matrices), rows, columns, device=weights.device)
+        rates = torch.tensor([rate for _, rate in matrices], device=weights.device)
+        self.rates = rates[:, None, None]
         self.steps = 0
 
     @torch.no_grad()
     def step(self, scale: float) -> None:
         """Move every matrix by its rate times `scale`; the first call only measures."""
         assert self.weights.grad is not None
-        gradients = self._stacked(self.weights.grad)
-        if not self.states:
-            self.states = [_fresh_state(gradient) for gradient in gradients]
+        gradient = self.stack
+        gradient.view(-1).index_copy_(0, self.order, self.weights.grad)
+        if self.state is None:
+            self.state = _fresh_state(gradient)
             return
         self.steps += 1
-        for matrices, rate, gradient, state in zip(
-            self._stacked(self.weights), self.rates, gradients, self.states, strict=True
-        ):
-            matrices.sub_(_direction(gradient, state, self.steps), alpha=rate * scale)
-            if self.steps % REFRESH_EVERY == 0:
-                _refresh(state)
-
-    def _stacked(self, vector: Tensor) -> list[Tensor]:
-        parts = torch.split(vector, [math.prod(stack) for stack in self.stacks])
-        return [part.view(stack) for part, stack in zip(parts, self.stacks, strict=True)]
+        moves = (_direction(gradient, self.state, self.steps) * self.rates).view(-1)
+        self.weights.sub_(moves.index_select(0, self.order), alpha=scale)
+        if self.steps % REFRESH_EVERY == 0:
+            _refresh(self.state)
 
 
 def _fresh_state(gradient: Tensor) -> _State:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 import torch
@@ -36,8 +36,13 @@ class Batch:
     def __len__(self) -> int:
         return len(self.points)
 
-    def __getitem__(self, rows: Tensor) -> Batch:
+    def __getitem__(self, rows: Tensor | slice) -> Batch:
         return Batch(self.points[rows], self.sdf[rows], self.chart[rows], self.uv[rows])
+
+    def parts(self, size: int) -> Iterator[Batch]:
+        """The batches of `size` points that this one holds; points left over are left out."""
+        for start in range(0, len(self) - size + 1, size):
+            yield self[start : start + size]
 
 
 Objective = Callable[[Module, Batch], Tensor]

@@ -148,9 +148,7 @@ class _Run:
                 again = torch.multinomial(self.reached, count, True, generator=generator)
                 both = torch.cat([order, again])
                 order = both[torch.randperm(len(both), generator=generator)]
-            order = order.to(self.samples.points.device)
-            for start in range(0, len(order) - size + 1, size):
-                yield self.samples[order[start : start + size]]
+            yield from self.samples[order.to(self.samples.points.device)].parts(size)
 
     def _charge(self, quantiser: Quantiser, learn: bool) -> None:
         schedule = self.task.schedule
@@ -196,8 +194,7 @@ class _Run:
     def _optimiser(self) -> Callable[[float], None]:
         module = self.module
         if self.task.schedule.optimiser == "soap":
-            rates = module.rates(self.task.schedule.last)
-            return Soap(module.weights, module.shapes, rates).step
+            return Soap(module.weights, module.matrices(self.task.schedule.last)).step
         adam = torch.optim.Adam([module.weights])
 
         def move(rate: float) -> None:

@@ -1,11 +1,18 @@
-"""Mirror symmetry: a network that sees |x| in place of x has to hold only half of the surface."""
+"""Mirror symmetry: a network that sees |x| in place of x has to hold only half of the surface.
+
+Most assets that are modelled in halves are not quite symmetric: a bracket on one side, an engraved
+number. There the network is told |x| and x, and has to hold the half and what differs.
+"""
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
+from numpy.typing import NDArray
 
 from nispcodec.asset import FloatArray
-from nispcodec.mesh.samples import Sampler, uniform_surface
+from nispcodec.mesh.samples import Sampler, SampleSet, uniform_surface
 
 PROBES = 2_000
 JITTER = 5e-3
@@ -17,19 +24,45 @@ Assets modelled in two halves stay below 1e-5; a small part on one side only (ex
 makes 1e-4 to 2e-4 and must not be lost.
 """
 
+ALIKE = 2e-3
+"""Distances and texture coordinates that differ by less count as the same."""
 
-def mirrored_axes(sampler: Sampler) -> tuple[bool, bool, bool]:
-    """About which of the planes x, y, z = 0 of the normalised frame the SDF is symmetric.
+MOSTLY = 0.9
+"""The share of probes from which on an axis is worth a coordinate more."""
+
+
+@dataclass(frozen=True)
+class Mirrors:
+    """For the SDF and the UV network, `mirror` as in `nispcodec.network.NetworkSpec`."""
+
+    sdf: int
+    uv: int
+
+
+def mirrors(sampler: Sampler) -> Mirrors:
+    """About which of the planes x, y, z = 0 of the normalised frame an asset is symmetric.
 
     Told by the same random points for every seed; what the sampler draws next is not touched.
     """
-    probes = _probes(sampler, np.random.default_rng(0))
-    distance = sampler.field.closest(probes).sdf
-    x, y, z = (
-        bool(np.abs(sampler.field.closest(probes * signs).sdf - distance).mean() < SYMMETRIC)
-        for signs in 1.0 - 2.0 * np.eye(3)
-    )
-    return x, y, z
+    points = _probes(sampler, np.random.default_rng(0))
+    here = sampler.label(points)
+    sdf = uv = 0
+    for axis, signs in enumerate(1.0 - 2.0 * np.eye(3)):
+        there = sampler.label(points * signs)
+        whole, sided = 1 << axis, 9 << axis
+        off = np.abs(there.sdf - here.sdf)
+        if off.mean() < SYMMETRIC:
+            sdf |= whole
+        elif (off < ALIKE).mean() > MOSTLY:
+            sdf |= sided
+        if ((off < ALIKE) & _same_uv(here, there)).mean() > MOSTLY:
+            uv |= sided
+    return Mirrors(sdf, uv)
+
+
+def _same_uv(here: SampleSet, there: SampleSet) -> NDArray[np.bool_]:
+    same: NDArray[np.bool_] = (np.abs(here.uv - there.uv) < ALIKE).all(axis=1)
+    return same
 
 
 def _probes(sampler: Sampler, random: np.random.Generator) -> FloatArray:

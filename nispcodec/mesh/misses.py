@@ -13,20 +13,21 @@ from scipy.spatial import cKDTree
 Floats = NDArray[np.float32]
 
 REACH = 0.075
-"""Mistakes that reach further (normalised frame) weigh no more."""
+"""The nearest sample on the right side is sought no further away than this (normalised frame)."""
 
 
 def reaches(points: Floats, sdf: Floats, field: Floats) -> Floats:
-    """How far every mistake reaches, up to `REACH`: 0 where `field` has the sign of `sdf`.
+    """How far every mistake reaches: 0 where `field` has the sign of `sdf`.
 
     points (n, 3), sdf (n,), field (n,) -> (n,): from a sample on the wrong side to the nearest one
-    that the field puts on the side where the former belongs; the surface is off by about that much.
+    that the field puts on the side where the former belongs, and no less than |sdf|. About so far
+    is the asset from the field's surface, or a body or hollow that is none from the asset.
     """
     found = np.zeros(len(points), dtype=np.float32)
     for inside in (False, True):
         kept = (field < 0) == inside
         missed = ~kept & ((sdf < 0) == inside)
-        found[missed] = _to_nearest(points[kept], points[missed])
+        found[missed] = np.maximum(_to_nearest(points[kept], points[missed]), np.abs(sdf[missed]))
     return found
 
 

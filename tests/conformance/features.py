@@ -139,6 +139,7 @@ def _topologies() -> Iterator[tuple[str, bytes]]:
         "sigmoid": network((16,), 1, 6, output="sigmoid"),
         "deep": network((6,) * 8, 1, 7),
         "mirror": network((9, 8), 1, 13, mirror=0b101),
+        "sided": network((9, 8), 1, 14, mirror=0b011011),
     }
     for name, sdf in sdfs.items():
         yield f"topology-{name}", pack(dataclasses.replace(plain(), sdf=sdf))
@@ -147,6 +148,7 @@ def _topologies() -> Iterator[tuple[str, bytes]]:
         "scalar": {"conditioning": "scalar", "charts": 2},
         "scalar-fourier": {"conditioning": "scalar", "charts": 2, **fourier, "output": "sigmoid"},
         "scalar-mirror": {"conditioning": "scalar", "charts": 2, **fourier, "mirror": 0b010},
+        "scalar-sided": {"conditioning": "scalar", "charts": 2, **fourier, "mirror": 0b010010},
         "embedding": {"conditioning": "embedding", "charts": 2, "embedding": 4},
     }
     for name, options in uvs.items():

@@ -42,7 +42,7 @@ class Reader:
     def shapes(self, number: int) -> list[tuple[int, int]]:
         """Rows and columns of a network's tensors (section 5)."""
         made = self.specs[number]
-        coordinates = 4 if made["conditioning"] == "scalar" else 3
+        coordinates = 3 + (made["mirror"] >> 3).bit_count() + (made["conditioning"] == "scalar")
         inputs = coordinates * (2 * made["levels"] if made["encoding"] == "fourier" else 1)
         widths = [inputs + made["embedding"], *made["hidden"], (1, self.k, 2)[number - 1]]
         table = [(self.k, made["embedding"])] if made["conditioning"] == "embedding" else []

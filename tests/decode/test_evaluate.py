@@ -31,6 +31,10 @@ SPECS = {
     "mirror scalar fourier": NetworkSpec(
         (8,), 2, encoding="fourier", levels=2, conditioning="scalar", charts=7, mirror=0b110
     ),
+    "sided": NetworkSpec((8, 8), 1, w0=2.0, mirror=0b101101),
+    "sided scalar fourier": NetworkSpec(
+        (8,), 2, encoding="fourier", levels=2, conditioning="scalar", charts=7, mirror=0b010110
+    ),
 }
 
 BLOCK = block_size(SPECS["siren"])
@@ -40,6 +44,7 @@ def by_hand(network: Network, point: np.ndarray, chart: int) -> list[float]:
     spec = network.spec
     mirrored = [spec.mirror >> axis & 1 for axis in range(3)]
     coordinates = [abs(float(p)) if m else float(p) for p, m in zip(point, mirrored, strict=True)]
+    coordinates += [float(point[axis]) for axis in range(3) if spec.mirror >> 3 + axis & 1]
     if spec.conditioning == "scalar":
         coordinates.append((2 * chart + 1) / spec.charts - 1)
     values = coordinates
@@ -88,7 +93,7 @@ def test_any_number_of_points(count: int) -> None:
 @pytest.mark.parametrize("activation", ["sine", "relu"])
 @pytest.mark.parametrize("encoding", ["identity", "fourier"])
 @pytest.mark.parametrize("output", ["identity", "tanh", "sigmoid"])
-@pytest.mark.parametrize("mirror", [0, 0b001, 0b110])
+@pytest.mark.parametrize("mirror", [0, 0b001, 0b110, 0b110111])
 def test_gradient_is_the_slope_of_the_values(
     activation: str, encoding: str, output: str, mirror: int
 ) -> None:

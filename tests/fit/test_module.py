@@ -19,6 +19,7 @@ SPECS = {
     "embedding": NetworkSpec((6, 6), 2, conditioning="embedding", charts=5, embedding=3),
     "paper uv": paper_uv(3),
     "mirror": NetworkSpec((9, 7), 1, mirror=0b101),
+    "sided": NetworkSpec((9, 7), 1, mirror=0b101101),
     "mirror scalar": NetworkSpec((6,), 2, "fourier", 3, "scalar", charts=5, w0=1.0, mirror=0b010),
 }
 

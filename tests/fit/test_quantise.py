@@ -97,8 +97,9 @@ def test_a_snapped_step_is_near_and_stays(step: float) -> None:
 def test_settled_steps_are_what_is_stored() -> None:
     module = quantised_module()
     assert module.quantiser is not None
-    stored = module.network().steps["weight.0"] * module.scales[0]
-    assert float(module.quantiser.steps[0]) == pytest.approx(stored, rel=1e-5)
+    stored = module.network().steps["weight.0"] * module.scales["weight.0"]
+    steps = dict(zip(UV.shapes, module.quantiser.steps, strict=True))
+    assert float(steps["weight.0"]) == pytest.approx(stored, rel=1e-5)
 
 
 def bits(price: float) -> float:

@@ -53,10 +53,8 @@ def run(task: Task, listen: Callable[[Progress], None] = silent, seed: int = 0) 
 def module_of(network: Network) -> Module:
     """The torch side of a stored network."""
     module = Module(network.spec, torch.Generator(), "cpu")
-    layers = [np.concatenate([weight, bias[:, None]], axis=1) for weight, bias in network.layers]
-    table = [network.tensors["embedding"]] if network.spec.embedding else []
-    scaled = zip([*layers, *table], module.scales, strict=True)
-    vector = np.concatenate([(part * scale).ravel() for part, scale in scaled])
+    scaled = [tensor * module.scales[name] for name, tensor in network.tensors.items()]
+    vector = np.concatenate([tensor.ravel() for tensor in scaled])
     module.weights.data = torch.from_numpy(vector.astype(np.float32))
     return module
 
@@ -165,13 +163,14 @@ def test_a_device_that_is_not_there_is_an_error(device: str) -> None:
 
 
 def test_soap_finds_the_minimum_of_a_badly_scaled_quadratic() -> None:
-    """Two matrices of one shape, which are moved together, and one of another."""
+    """Two matrices of one shape and one of another, in no order: all are moved together."""
     torch.manual_seed(0)
-    shapes = [(4, 6), (4, 6), (3, 2)]
+    first, second, third = torch.arange(54).split([24, 24, 6])
+    matrices = [(second.view(4, 6), 1.0), (first.view(4, 6), 1.0), (third.view(3, 2), 0.5)]
     target = torch.randn(54)
     scales = torch.cat([torch.logspace(-3, 0, 6).repeat(8), torch.ones(6)])
     weights = torch.zeros(54, requires_grad=True)
-    soap = Soap(weights, shapes, [1.0, 1.0, 0.5])
+    soap = Soap(weights, matrices)
     for step in range(600):
         weights.grad = (weights.detach() - target) * scales**2
         soap.step(0.05 * (1 - step / 600))

@@ -165,7 +165,7 @@ def matrices(made: network.Network) -> list[tuple[int, int]]:
         {"conditioning": "scalar", "charts": 5, "output": "sigmoid", "w0": 4.0},
         {"conditioning": "scalar", "charts": 5, "encoding": "fourier", "levels": 2},
         {"conditioning": "embedding", "charts": 5, "embedding": 3},
-        {"conditioning": "scalar", "charts": 5, "encoding": "fourier", "levels": 2, "mirror": 5},
+        {"conditioning": "scalar", "charts": 5, "encoding": "fourier", "levels": 2, "mirror": 13},
     ],
     ids=["plain", "fourier", "scalar", "both", "embedding", "mirror"],
 )

@@ -8,7 +8,7 @@ import pytest
 
 from nispcodec.mesh.charts import split_charts
 from nispcodec.mesh.load import load_mesh
-from nispcodec.mesh.mirror import mirrored_axes
+from nispcodec.mesh.mirror import Mirrors, mirrors
 from nispcodec.mesh.samples import Sampler
 
 ASSETS = Path(__file__).resolve().parents[3] / "shared" / "assets"
@@ -47,16 +47,18 @@ def test_real_asset(name: str):
 
 
 @pytest.mark.parametrize(
-    ("name", "axes"),
+    ("name", "expected"),
     [
-        ("spot", (True, False, False)),
-        ("exploding_barrel", (True, False, False)),
-        ("chess_king", (True, False, True)),
-        ("boombox", (False, False, False)),
+        ("spot", Mirrors(sdf=0b000001, uv=0)),
+        ("exploding_barrel", Mirrors(sdf=0b100101, uv=0)),
+        ("chess_king", Mirrors(sdf=0b000101, uv=0)),
+        ("boombox", Mirrors(sdf=0b001001, uv=0)),
+        ("gz_polaris", Mirrors(sdf=0b001001, uv=0b001001)),
+        ("tea_set_01", Mirrors(sdf=0, uv=0)),
     ],
 )
-def test_symmetry_of_real_assets(name: str, axes: tuple[bool, bool, bool]) -> None:
+def test_symmetry_of_real_assets(name: str, expected: Mirrors) -> None:
     path = ASSETS / name / f"{name}.obj"
     if not path.exists():
         pytest.skip(f"no asset {path}")
-    assert mirrored_axes(Sampler(load_mesh(path), seed=0)) == axes
+    assert mirrors(Sampler(load_mesh(path), seed=0)) == expected
