@@ -78,7 +78,7 @@ def pruned(tasks: list[Task], prunings: Mapping[str, Pruning]) -> list[Task]:
 def fit_with_preset(fitting: Fitting) -> Networks:
     """Networks as large as the preset and the asset suggest."""
     errors = fitting.probe()
-    widths = widths_for(errors, fitting.effort.scale)
+    widths = widths_for(errors, fitting.problem.area, fitting.effort.scale)
     return fitting.fit(fitting.tasks(widths, errors, {}), fitting.listen)
 
 
@@ -100,9 +100,9 @@ def fit_to_size(
         )
     errors = fitting.probe()
     scale = scale_for_bytes(
-        lambda scale: bytes_of(problem.specs(widths_for(errors, scale))), wanted - besides
+        lambda scale: bytes_of(problem.specs(widths_for(errors, problem.area, scale))), wanted - besides
     )
-    widths = widths_for(errors, scale)
+    widths = widths_for(errors, problem.area, scale)
     specs = problem.specs(widths)
     bits = 8 * (wanted - besides) / sum(spec.weight_count for spec in specs.values())
     budgets = {name: bits * spec.weight_count for name, spec in specs.items()}
@@ -118,7 +118,7 @@ def fit_to_error(fitting: Fitting, wanted: float) -> Networks:
     if wanted < LEAST_ERROR:
         raise NispError(f"target error: expected at least {LEAST_ERROR:g}, found {wanted:g}")
     errors = fitting.probe()
-    widths = dict(widths_for(errors, fitting.effort.scale))
+    widths = dict(widths_for(errors, fitting.problem.area, fitting.effort.scale))
     networks: Networks = {}
     tried: dict[int, float] = {}
     for _ in range(ROUNDS):

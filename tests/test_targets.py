@@ -15,6 +15,7 @@ from nispcodec.fit.parallel import fit_networks
 from nispcodec.fit.presets import Effort, Problem
 from nispcodec.fit.task import Task
 from nispcodec.format import pack
+from nispcodec.mesh.mirror import Mirrors
 from nispcodec.mesh.training import TrainingSets
 from nispcodec.network import Network
 from nispcodec.progress import Listener, Progress, silent
@@ -27,7 +28,7 @@ TABLE = ChartTable(materials=np.zeros(1, np.int32), has_uv=np.zeros(1, np.bool_)
 def problem() -> Problem:
     samples, held_out = ball_samples(4000, 0), ball_samples(500, 1)
     held_out = replace(held_out, sdf=np.zeros_like(held_out.sdf))
-    return Problem(TrainingSets(samples, samples, held_out, held_out), 1, False, 0)
+    return Problem(TrainingSets(samples, samples, held_out, held_out), 1, False, 5.0, Mirrors(0, 0))
 
 
 def really(tasks: list[Task], listen: Listener) -> Networks:

@@ -20,11 +20,15 @@ from nispcodec.network import Network
 LIMIT = 1.02
 # Nothing of the asset is outside of this ball.
 OUTSIDE = 1.01
-BLOCK = 4
-ROOT = 16
+BLOCK = 2
+ROOT = 32
 NEWTON_STEPS = 2
 # Vertices keep this share of a cell from grid points, where several would coincide.
 CLEARANCE = 0.01
+# Blocks whose points are evaluated at a time, which bounds memory.
+TOGETHER = 4096
+# From a grid point of a block to the next along each axis.
+STRIDES = np.array([(BLOCK + 1) ** 2, BLOCK + 1, 1])
 
 Ids = NDArray[np.int64]
 Floats = NDArray[np.float32]
@@ -47,9 +51,9 @@ def extract(network: Network, resolution: int) -> Surface:
     """
     root, levels, cell = _grid(resolution)
     blocks = _surface_blocks(network, root, levels, cell)
-    values = _block_values(network, blocks, root * 2**levels, cell)
-    edges, ends, faces = _polygons(blocks, values)
-    crossings = _crossings(edges, ends, cell)
+    values, points = _block_values(network, blocks, root * 2**levels, cell)
+    places, axes, faces = _polygons(values, points)
+    crossings = _crossings(blocks, values.ravel(), places, axes, cell)
     return Surface(onto_surface(network, crossings, cell / 2, NEWTON_STEPS), faces, cell)
 
 
@@ -105,38 +109,55 @@ def _steepness(network: Network, points: Floats) -> float:
     return float(1.25 * np.percentile(slopes, 99, method="higher")) if len(slopes) else 1.0
 
 
-def _block_values(network: Network, blocks: Ids, across: int, cell: float) -> Floats:
-    """The field at each block's (BLOCK + 1)^3 grid points: (b, 5, 5, 5) float32.
+def _block_values(
+    network: Network, blocks: Ids, across: int, cell: float
+) -> tuple[Floats, NDArray[np.int32]]:
+    """The field at each block's (BLOCK + 1)^3 grid points, and their numbers: (b, 5, 5, 5) each.
 
     A block owns its BLOCK^3 lower points and takes the others from its upper neighbours, so that a
     point shared by several blocks has one value, bit for bit, or the surface would crack.
     """
     numbers = np.full((across + 1,) * 3, -1, np.int32)
     numbers[tuple(blocks.T)] = np.arange(len(blocks))
-    inner = _lattice(BLOCK)
-    own = _field(network, (blocks[:, None] * BLOCK + inner).reshape(-1, 3), cell)
-    own = own.reshape(-1, *(BLOCK,) * 3)
+    own = _own_values(network, blocks, cell)
+    own_points = np.arange(own.size, dtype=np.int32).reshape(own.shape)
     values = np.empty((len(blocks), *(BLOCK + 1,) * 3), np.float32)
+    points = np.empty(values.shape, np.int32)
     values[:, :BLOCK, :BLOCK, :BLOCK] = own
+    points[:, :BLOCK, :BLOCK, :BLOCK] = own_points
     absent = np.zeros(values.shape, np.bool_)
     for corner in CORNERS[1:]:
         owners = numbers[tuple((blocks + corner).T)]
         rim = (slice(None), *(slice(BLOCK, None) if c else slice(BLOCK) for c in corner))
         theirs = (slice(None), *(slice(1) if c else slice(None) for c in corner))
         values[rim] = own[theirs][owners]
+        points[rim] = own_points[theirs][owners]
         absent[rim] = (owners < 0)[:, None, None, None]
-    _fill(network, blocks, absent, values, cell)
-    return values
+    values[absent], rim_points = _rim_values(network, blocks, absent, cell)
+    points[absent] = own.size + rim_points
+    return values, points
 
 
-def _fill(
-    network: Network, blocks: Ids, absent: NDArray[np.bool_], values: Floats, cell: float
-) -> None:
-    """Evaluate the rim points that no kept block owns, each once."""
+def _own_values(network: Network, blocks: Ids, cell: float) -> Floats:
+    """The field at the points that blocks own, (b, 4, 4, 4)."""
+    inner = _lattice(BLOCK)
+    own = np.empty((len(blocks), BLOCK**3), np.float32)
+    for start in range(0, len(blocks), TOGETHER):
+        some = blocks[start : start + TOGETHER, None] * BLOCK + inner
+        own[start : start + TOGETHER] = _field(network, some.reshape(-1, 3), cell).reshape(
+            -1, BLOCK**3
+        )
+    return own.reshape(-1, *(BLOCK,) * 3)
+
+
+def _rim_values(
+    network: Network, blocks: Ids, absent: NDArray[np.bool_], cell: float
+) -> tuple[Floats, Ids]:
+    """The field at the rim points that no kept block owns, each evaluated once; their numbers."""
     block, *offset = np.nonzero(absent)
     keys = _key(blocks[block] * BLOCK + np.stack(offset, axis=1))
     unique, inverse = np.unique(keys, return_inverse=True)
-    values[absent] = _field(network, _unkey(unique), cell)[inverse]
+    return _field(network, _unkey(unique), cell)[inverse], inverse
 
 
 def _field(network: Network, grid: Ids, cell: float) -> Floats:
@@ -152,31 +173,52 @@ def _unkey(keys: Ids) -> Ids:
     return np.stack([keys >> 40, keys >> 20 & mask, keys & mask], axis=-1)
 
 
-def _polygons(blocks: Ids, values: Floats) -> tuple[Ids, Floats, NDArray[np.int32]]:
-    """Crossed grid edges (n, 4: low point, axis), the field at their ends (n, 2), faces (m, 3)."""
+def _polygons(
+    values: Floats, points: NDArray[np.int32]
+) -> tuple[Ids, NDArray[np.int8], NDArray[np.int32]]:
+    """The crossed grid edges: where their low ends are in `values` (n,), their axes; faces (m, 3).
+
+    An edge is known by the number of its low point, so that no sorting is needed to find the same
+    edge in several cells.
+    """
+    cases = _cases(values)
+    cells = np.flatnonzero((cases > 0) & (cases < 255))
+    owners, triangles = polygonise(cases[cells])
+    lows, axes = np.array([low for low, _ in EDGES]), np.array([axis for _, axis in EDGES], np.int8)
+    places = _first_corners(cells)[owners, None] + (CORNERS @ STRIDES)[lows[triangles]]
+    edges = 3 * points.ravel()[places] + axes[triangles]
+    numbers = np.zeros(3 * (int(points.max(initial=0)) + 1), np.int32)
+    numbers[edges] = 1
+    crossed = np.flatnonzero(numbers)
+    numbers[crossed] = np.arange(len(crossed))
+    faces = numbers[edges]
+    first = np.empty(len(crossed), np.int64)
+    first[faces] = places
+    return first, (crossed % 3).astype(np.int8), faces
+
+
+def _cases(values: Floats) -> NDArray[np.uint8]:
+    """The case of every cell of every block, (b * BLOCK^3,)."""
     inside = values < 0
-    cases = np.zeros((len(blocks), *(BLOCK,) * 3), np.uint8)
+    cases = np.zeros((len(values), *(BLOCK,) * 3), np.uint8)
     for i, corner in enumerate(CORNERS):
         window = (slice(None), *(slice(c, c + BLOCK) for c in corner))
         cases |= inside[window].astype(np.uint8) << i
-    active = np.argwhere((cases > 0) & (cases < 255))
-    cells, triangles = polygonise(cases[tuple(active.T)])
-    lows = np.array([low for low, _ in EDGES])[triangles]
-    axes = np.array([axis for _, axis in EDGES])[triangles]
-    grid = (blocks[active[:, 0]] * BLOCK + active[:, 1:])[cells][:, None] + CORNERS[lows]
-    keys, first, faces = np.unique(_key(grid) * 3 + axes, return_index=True, return_inverse=True)
-    where = (active[:, :1][cells], (active[:, 1:][cells][:, None] + CORNERS[lows]))
-    low = where[1].reshape(-1, 3)[first]
-    block = np.repeat(where[0], 3)[first]
-    axis = axes.ravel()[first]
-    high = low + np.eye(3, dtype=np.int64)[axis]
-    ends = np.stack([values[block, *low.T], values[block, *high.T]], axis=1)
-    edges = np.column_stack([_unkey(keys // 3), axis])
-    return edges, ends, faces.reshape(-1, 3).astype(np.int32)
+    return cases.ravel()
 
 
-def _crossings(edges: Ids, ends: Floats, cell: float) -> Floats:
-    fraction = np.clip(ends[:, 0] / (ends[:, 0] - ends[:, 1]), CLEARANCE, 1 - CLEARANCE)
-    grid = edges[:, :3].astype(np.float64)
-    grid[np.arange(len(grid)), edges[:, 3]] += fraction
+def _first_corners(cells: Ids) -> Ids:
+    """Where cells' lowest corners are in the values of all blocks."""
+    block, inner = np.divmod(cells, BLOCK**3)
+    return block * (BLOCK + 1) ** 3 + (_lattice(BLOCK) @ STRIDES)[inner]
+
+
+def _crossings(
+    blocks: Ids, values: Floats, places: Ids, axes: NDArray[np.int8], cell: float
+) -> Floats:
+    """Where the field crosses zero along each edge, if it were linear."""
+    low, high = values[places], values[places + STRIDES[axes]]
+    block, inner = np.divmod(places, (BLOCK + 1) ** 3)
+    grid = (blocks[block] * BLOCK + _lattice(BLOCK + 1)[inner]).astype(np.float64)
+    grid[np.arange(len(grid)), axes] += np.clip(low / (low - high), CLEARANCE, 1 - CLEARANCE)
     return (grid * cell - LIMIT).astype(np.float32)

@@ -17,6 +17,7 @@ from nispcodec.fit.sizes import FINE, LAYERS, Widths
 from nispcodec.fit.task import Schedule, Task
 from nispcodec.mesh.mirror import Mirrors, mirrors
 from nispcodec.mesh.samples import Sampler, SampleSet
+from nispcodec.mesh.solid import area
 from nispcodec.mesh.training import TrainingSets
 from nispcodec.network import NetworkSpec
 
@@ -69,18 +70,20 @@ EFFORTS = {
 
 @dataclass(frozen=True)
 class Problem:
-    """What the networks of an asset are asked for."""
+    """What the networks of an asset are asked for; `area` of the surface (normalised frame)."""
 
     sets: TrainingSets
     charts: int
     has_uv: bool
+    area: float
     mirrors: Mirrors
 
     @staticmethod
     def of(sampler: Sampler, sets: TrainingSets) -> Problem:
         """The problem of a sampled asset."""
         table = sampler.table
-        return Problem(sets, len(table), bool(table.has_uv.any()), mirrors(sampler))
+        surface = float(area(sampler.solid.pieces).sum())
+        return Problem(sets, len(table), bool(table.has_uv.any()), surface, mirrors(sampler))
 
     @property
     def networks(self) -> tuple[str, ...]:
@@ -97,7 +100,7 @@ class Problem:
         if name == "sdf":
             return NetworkSpec(hidden, 1, mirror=self.mirrors.sdf)
         if name == "chart":
-            return NetworkSpec(hidden, self.charts)
+            return NetworkSpec(hidden, self.charts, mirror=self.mirrors.chart)
         return NetworkSpec(
             hidden,
             2,

@@ -24,7 +24,7 @@ BITS = 9.5
 
 @dataclass(frozen=True)
 class Model:
-    """Width = `width` (error of the probe / `error`) ^ `power`, within `lowest` and `highest`."""
+    """Width = `width` (error of the probe / `error`)^`power`, within `lowest` and `highest`."""
 
     width: float
     error: float
@@ -32,25 +32,35 @@ class Model:
     lowest: int
     highest: int
 
-    def of(self, error: float) -> float:
-        """The width for a probe that is left with `error`."""
-        width = self.width * (error / self.error) ** self.power
+    def of(self, error: float, factor: float) -> float:
+        """The width for a probe that is left with `error`, times `factor`."""
+        width = factor * self.width * (error / self.error) ** self.power
         return min(max(width, self.lowest), self.highest)
 
 
 MODELS = {
-    "sdf": Model(40, 1.0e-3, 1.0, 20, 40),
+    "sdf": Model(30, 1.0e-3, 0.7, 20, 46),
     "chart": Model(26, 0.05, 0.3, 16, 56),
     "uv": Model(24, 1.5e-3, 0.7, 16, 56),
 }
+
+AREA, AREA_POWER = 5.0, 0.4
+"""With the same error left on a larger surface than this (normalised frame) more is to be held."""
 
 FINE, FINE_WIDTH = 1.8e-3, 72
 """An SDF whose probe is left with more is of another kind: wider, and learns slower."""
 
 
-def widths_for(errors: Mapping[str, float], scale: float = 1.0) -> Widths:
-    """The width of every network, from the held-out errors of the probes, times `scale`."""
-    widths = {name: MODELS[name].of(error) for name, error in errors.items()}
+def widths_for(errors: Mapping[str, float], area: float, scale: float = 1.0) -> Widths:
+    """The width of every network, from the held-out errors of the probes, times `scale`.
+
+    `area` is the surface's, in the normalised frame.
+    """
+    spread = max(1.0, area / AREA) ** AREA_POWER
+    widths = {
+        name: MODELS[name].of(error, spread if name == "sdf" else 1.0)
+        for name, error in errors.items()
+    }
     if errors["sdf"] > FINE:
         widths["sdf"] = FINE_WIDTH
     return {name: even_width(scale * width) for name, width in widths.items()}

@@ -105,7 +105,7 @@ class _Run:
         if schedule.price and step in (_at(QUANTISED, schedule), _at(HARD, schedule)):
             self._harden()
         if step in self.reviews:
-            self._review()
+            self._review(strays=step > self.reviews[0])
         loss = self.task.loss(self.module, next(self.batches))
         self.module.weights.grad = None
         loss.backward()  # type: ignore[no-untyped-call]
@@ -126,12 +126,13 @@ class _Run:
         self.best_error, self.best = math.inf, self._weights()
 
     @torch.no_grad()
-    def _review(self) -> None:
+    def _review(self, strays: bool) -> None:
         """From now on draw the samples on the wrong side more often, most those that cost most."""
         samples = self.samples
         parts = torch.split(samples.points, REVIEWED)
         field = torch.cat([self.module(part)[:, 0] for part in parts])
-        reach = reaches(*(each.cpu().numpy() for each in (samples.points, samples.sdf, field)))
+        points, sdf, found = (part.cpu().numpy() for part in (samples.points, samples.sdf, field))
+        reach = reaches(points, sdf, found, strays)
         self.reached = torch.maximum(MEMORY * self.reached, torch.from_numpy(reach))
         self.batches = self._batches()
 

@@ -38,6 +38,11 @@ class Mirrors:
     sdf: int
     uv: int
 
+    @property
+    def chart(self) -> int:
+        """Borders of charts are where they are on the other side, but the numbers seldom."""
+        return self.sdf & 0b111 | (self.sdf & 0b111) << 3
+
 
 def mirrors(sampler: Sampler) -> Mirrors:
     """About which of the planes x, y, z = 0 of the normalised frame an asset is symmetric.

@@ -16,18 +16,21 @@ REACH = 0.075
 """The nearest sample on the right side is sought no further away than this (normalised frame)."""
 
 
-def reaches(points: Floats, sdf: Floats, field: Floats) -> Floats:
+def reaches(points: Floats, sdf: Floats, field: Floats, strays: bool = False) -> Floats:
     """How far every mistake reaches: 0 where `field` has the sign of `sdf`.
 
     points (n, 3), sdf (n,), field (n,) -> (n,): from a sample on the wrong side to the nearest one
-    that the field puts on the side where the former belongs, and no less than |sdf|. About so far
-    is the asset from the field's surface, or a body or hollow that is none from the asset.
+    that the field puts on the side where the former belongs; the surface is off by about that much.
+    With `strays`, mistakes further than `REACH` from the asset reach to it: so far off is a body or
+    hollow that is none. Early in a fit there are so many of these that all else is neglected.
     """
     found = np.zeros(len(points), dtype=np.float32)
     for inside in (False, True):
         kept = (field < 0) == inside
         missed = ~kept & ((sdf < 0) == inside)
-        found[missed] = np.maximum(_to_nearest(points[kept], points[missed]), np.abs(sdf[missed]))
+        found[missed] = _to_nearest(points[kept], points[missed])
+    far = (found > 0) & (np.abs(sdf) > REACH) & strays
+    found[far] = np.abs(sdf[far])
     return found
 
 

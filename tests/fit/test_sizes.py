@@ -23,8 +23,8 @@ scales = st.floats(0.0, 10.0)
 
 
 def test_each_network_has_a_width() -> None:
-    assert set(widths_for(ERRORS)) == set(MODELS)
-    assert widths_for({"sdf": 1e-3}) == {"sdf": widths_for(ERRORS)["sdf"]}
+    assert set(widths_for(ERRORS, 5.0)) == set(MODELS)
+    assert widths_for({"sdf": 1e-3}, 5.0) == {"sdf": widths_for(ERRORS, 5.0)["sdf"]}
 
 
 @given(errors, errors, scales, scales)
@@ -33,8 +33,8 @@ def test_more_to_learn_or_a_larger_scale_is_never_narrower(
 ) -> None:
     one, other, small, large = *sorted((one, other)), *sorted((small, large))
     for name in MODELS:
-        narrow = widths_for({"sdf": one, name: one}, small)[name]
-        wide = widths_for({"sdf": other, name: other}, large)[name]
+        narrow = widths_for({"sdf": one, name: one}, 2.0, small)[name]
+        wide = widths_for({"sdf": other, name: other}, 3.0, large)[name]
         assert MIN_WIDTH <= narrow <= wide <= MAX_WIDTH
 
 
@@ -46,7 +46,7 @@ def test_widths_are_even(width: float) -> None:
 @pytest.mark.parametrize("wanted", [2000, 10_000, 50_000])
 def test_the_scale_meets_the_bytes(wanted: float) -> None:
     def size(scale: float) -> float:
-        widths = widths_for(ERRORS, scale)
+        widths = widths_for(ERRORS, 5.0, scale)
         return bytes_of({name: NetworkSpec((width,) * 4, 2) for name, width in widths.items()})
 
     scale = scale_for_bytes(size, wanted)
