@@ -100,7 +100,8 @@ def fit_to_size(
         )
     errors = fitting.probe()
     scale = scale_for_bytes(
-        lambda scale: bytes_of(problem.specs(widths_for(errors, problem.area, scale))), wanted - besides
+        lambda scale: bytes_of(problem.specs(widths_for(errors, problem.area, scale))),
+        wanted - besides,
     )
     widths = widths_for(errors, problem.area, scale)
     specs = problem.specs(widths)

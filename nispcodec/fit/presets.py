@@ -30,6 +30,9 @@ PRICES = {"sdf": 0.005, "chart": 0.01, "uv": 0.01}
 """By what share of the loss a bit a weight less may raise it."""
 
 BATCHES = {"sdf": 2048, "chart": 1024, "uv": 2048}
+WIDE, WIDE_BATCH = 36, 1024
+"""An SDF so wide, unless it learns slowly, does better with more and smaller steps."""
+
 SHARES = {"sdf": 1.0, "chart": 0.35, "uv": 0.65}
 """Of the seconds: the SDF has a core to itself, charts and UVs share the other."""
 
@@ -100,7 +103,7 @@ class Problem:
         if name == "sdf":
             return NetworkSpec(hidden, 1, mirror=self.mirrors.sdf)
         if name == "chart":
-            return NetworkSpec(hidden, self.charts, mirror=self.mirrors.chart)
+            return NetworkSpec(hidden, self.charts, mirror=self.mirrors.uv)
         return NetworkSpec(
             hidden,
             2,
@@ -134,10 +137,14 @@ def sine_tasks(
     """
     tasks = []
     for name, spec in problem.specs(widths).items():
-        steps = steps_in(effort.seconds * SHARES[name], spec, BATCHES[name])
+        slow = name == "sdf" and errors["sdf"] > FINE
+        wide = name == "sdf" and widths["sdf"] >= WIDE and not slow
+        batch = WIDE_BATCH if wide else BATCHES[name]
+        steps = steps_in(effort.seconds * SHARES[name], spec, batch)
         schedule = replace(
             _schedule(name, steps, effort.band),
-            rate=FINE_RATE if name == "sdf" and errors["sdf"] > FINE else RATE,
+            batch=batch,
+            rate=FINE_RATE if slow else RATE,
             price=PRICES[name],
             budget=budgets.get(name, 0.0),
             reviews=effort.reviews if name == "sdf" else 0,

@@ -40,8 +40,8 @@ class Model:
 
 MODELS = {
     "sdf": Model(30, 1.0e-3, 0.7, 20, 46),
-    "chart": Model(26, 0.05, 0.3, 16, 56),
-    "uv": Model(24, 1.5e-3, 0.7, 16, 56),
+    "chart": Model(24, 0.05, 0.3, 14, 56),
+    "uv": Model(22.5, 1.5e-3, 0.6, 16, 56),
 }
 
 AREA, AREA_POWER = 5.0, 0.4

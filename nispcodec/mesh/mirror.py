@@ -33,15 +33,10 @@ MOSTLY = 0.9
 
 @dataclass(frozen=True)
 class Mirrors:
-    """For the SDF and the UV network, `mirror` as in `nispcodec.network.NetworkSpec`."""
+    """For the SDF, and for charts and UVs: `mirror` as in `nispcodec.network.NetworkSpec`."""
 
     sdf: int
     uv: int
-
-    @property
-    def chart(self) -> int:
-        """Borders of charts are where they are on the other side, but the numbers seldom."""
-        return self.sdf & 0b111 | (self.sdf & 0b111) << 3
 
 
 def mirrors(sampler: Sampler) -> Mirrors:
@@ -63,6 +58,23 @@ def mirrors(sampler: Sampler) -> Mirrors:
         if ((off < ALIKE) & _same_uv(here, there)).mean() > MOSTLY:
             uv |= sided
     return Mirrors(sdf, uv)
+
+
+def unlike(sampler: Sampler, count: int, spread: float) -> list[SampleSet]:
+    """For each axis that is told by its side, samples where the asset is not like its image.
+
+    Of `count` mirror images of points near the surface those whose distance is another one: a
+    network that is told |x| puts a ghost of what is on one side only there, and no other samples
+    would see it.
+    """
+    near = sampler.near(count, spread)
+    sided = mirrors(sampler).sdf >> 3
+    found = []
+    for axis, signs in enumerate(1.0 - 2.0 * np.eye(3)):
+        if sided >> axis & 1:
+            there = sampler.label(near.points * signs)
+            found.append(there[np.abs(there.sdf - near.sdf) > ALIKE])
+    return found
 
 
 def _same_uv(here: SampleSet, there: SampleSet) -> NDArray[np.bool_]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from nispcodec.mesh.mirror import unlike
 from nispcodec.mesh.samples import BETA, Sampler, SampleSet
 
 TIGHT = 1 / 300
@@ -12,6 +13,9 @@ TIGHT = 1 / 300
 WIDE = 1 / 12
 """Mean distance of the samples for the insides of bodies, of which the cube's are few."""
 
+UNLIKE = 1 / 100
+"""As TIGHT, for what is on one side only of a nearly symmetric asset."""
+
 SKIN = 3e-3
 """Mean distance of the samples for charts and UVs: decisions far from the surface are wasted."""
 
@@ -19,6 +23,7 @@ NEAR_COUNT = 80_000
 TIGHT_COUNT = 240_000
 CUBE_COUNT = 80_000
 WIDE_COUNT = 40_000
+UNLIKE_COUNT = 80_000
 SKIN_COUNT = 250_000
 MEMBRANE_COUNT = 12_000
 HELD_OUT_COUNT = 20_000
@@ -42,6 +47,7 @@ def training_sets(sampler: Sampler) -> TrainingSets:
         sampler.near(TIGHT_COUNT, TIGHT),
         sampler.cube(CUBE_COUNT),
         sampler.near(WIDE_COUNT, WIDE),
+        *unlike(sampler, UNLIKE_COUNT, UNLIKE),
     )
     return TrainingSets(
         distance=SampleSet.joined(distance),
