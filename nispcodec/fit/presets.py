@@ -37,6 +37,9 @@ SHARES = {"sdf": 1.0, "chart": 0.35, "uv": 0.65}
 """Of the seconds: the SDF has a core to itself, charts and UVs share the other."""
 
 RATE, FINE_RATE = 1e-3, 5e-4
+FINE_TIME = 0.87
+"""Assets of fine detail take longer to read and to sample: their fits give that time back."""
+
 EMBEDDING = 4
 """Numbers a chart that the UV network is told it by."""
 
@@ -135,16 +138,17 @@ def sine_tasks(
     errors   held-out errors of the probes, by name
     budgets  bits for each network; without one the price decides
     """
+    fine = errors["sdf"] > FINE
+    seconds = effort.seconds * (FINE_TIME if fine else 1.0)
     tasks = []
     for name, spec in problem.specs(widths).items():
-        slow = name == "sdf" and errors["sdf"] > FINE
-        wide = name == "sdf" and widths["sdf"] >= WIDE and not slow
+        wide = name == "sdf" and widths["sdf"] >= WIDE and not fine
         batch = WIDE_BATCH if wide else BATCHES[name]
-        steps = steps_in(effort.seconds * SHARES[name], spec, batch)
+        steps = steps_in(seconds * SHARES[name], spec, batch)
         schedule = replace(
             _schedule(name, steps, effort.band),
             batch=batch,
-            rate=FINE_RATE if slow else RATE,
+            rate=FINE_RATE if fine and name == "sdf" else RATE,
             price=PRICES[name],
             budget=budgets.get(name, 0.0),
             reviews=effort.reviews if name == "sdf" else 0,
