@@ -32,14 +32,14 @@ class Model:
     lowest: int
     highest: int
 
-    def of(self, error: float, factor: float) -> float:
-        """The width for a probe that is left with `error`, times `factor`."""
-        width = factor * self.width * (error / self.error) ** self.power
+    def of(self, error: float) -> float:
+        """The width for a probe that is left with `error`."""
+        width = self.width * (error / self.error) ** self.power
         return min(max(width, self.lowest), self.highest)
 
 
 MODELS = {
-    "sdf": Model(30, 1.0e-3, 0.7, 20, 46),
+    "sdf": Model(30, 1.0e-3, 0.7, 22, 36),
     "chart": Model(24, 0.05, 0.3, 14, 56),
     "uv": Model(22.5, 1.5e-3, 0.6, 16, 56),
 }
@@ -56,11 +56,8 @@ def widths_for(errors: Mapping[str, float], area: float, scale: float = 1.0) -> 
 
     `area` is the surface's, in the normalised frame.
     """
-    spread = max(1.0, area / AREA) ** AREA_POWER
-    widths = {
-        name: MODELS[name].of(error, spread if name == "sdf" else 1.0)
-        for name, error in errors.items()
-    }
+    widths = {name: MODELS[name].of(error) for name, error in errors.items()}
+    widths["sdf"] *= max(1.0, area / AREA) ** AREA_POWER
     if errors["sdf"] > FINE:
         widths["sdf"] = FINE_WIDTH
     return {name: even_width(scale * width) for name, width in widths.items()}
