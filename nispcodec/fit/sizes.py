@@ -39,7 +39,7 @@ class Model:
 
 
 MODELS = {
-    "sdf": Model(30, 1.0e-3, 0.7, 22, 36),
+    "sdf": Model(30, 1.0e-3, 0.7, 22, 46),
     "chart": Model(24, 0.05, 0.3, 14, 56),
     "uv": Model(22.5, 1.5e-3, 0.6, 16, 56),
 }
