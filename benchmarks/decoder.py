@@ -189,10 +189,11 @@ def measured_asset(model: Path, assets: Path) -> Record:
 @click.option("--models", type=click.Path(path_type=Path, exists=True), required=True)
 @click.option("--assets", type=click.Path(path_type=Path, exists=True), required=True)
 @click.option("-o", "--output", type=click.Path(path_type=Path), required=True)
-@click.option("--only", multiple=True, help="Names of assets; all in --models by default.")
+@click.option("--only", multiple=True, help="Names of assets; results of the others stay.")
 def main(models: Path, assets: Path, output: Path, only: tuple[str, ...]) -> None:
     """Measure the decoder on every NAME.nisp in MODELS."""
     peak = matrix_peak()
+    known: Record = json.loads(output.read_text())["assets"] if only and output.exists() else {}
     record: Record = {
         "machine": machine(),
         "versions": versions(),
@@ -200,7 +201,7 @@ def main(models: Path, assets: Path, output: Path, only: tuple[str, ...]) -> Non
         "matrix_product_flops": round(peak),
         "paper": PAPER,
         "queries_8x64": paper_queries(),
-        "assets": {},
+        "assets": known,
     }
     plain = record["queries_8x64"]["plain"]
     plain["share_of_peak"] = round(plain["sdf_flops"] / peak, 3)
