@@ -7,6 +7,7 @@ vertices are moved onto the zero set.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -112,13 +113,12 @@ def _steepness(network: Network, points: Floats) -> float:
 def _block_values(
     network: Network, blocks: Ids, across: int, cell: float
 ) -> tuple[Floats, NDArray[np.int32]]:
-    """The field at each block's (BLOCK + 1)^3 grid points, and their numbers: (b, 5, 5, 5) each.
+    """The field at each block's (BLOCK + 1)^3 grid points, and their numbers: (b, 3, 3, 3) each.
 
     A block owns its BLOCK^3 lower points and takes the others from its upper neighbours, so that a
     point shared by several blocks has one value, bit for bit, or the surface would crack.
     """
-    numbers = np.full((across + 1,) * 3, -1, np.int32)
-    numbers[tuple(blocks.T)] = np.arange(len(blocks))
+    number_of = _numbered(blocks, across)
     own = _own_values(network, blocks, cell)
     own_points = np.arange(own.size, dtype=np.int32).reshape(own.shape)
     values = np.empty((len(blocks), *(BLOCK + 1,) * 3), np.float32)
@@ -127,7 +127,7 @@ def _block_values(
     points[:, :BLOCK, :BLOCK, :BLOCK] = own_points
     absent = np.zeros(values.shape, np.bool_)
     for corner in CORNERS[1:]:
-        owners = numbers[tuple((blocks + corner).T)]
+        owners = number_of(blocks + corner)
         rim = (slice(None), *(slice(BLOCK, None) if c else slice(BLOCK) for c in corner))
         theirs = (slice(None), *(slice(1) if c else slice(None) for c in corner))
         values[rim] = own[theirs][owners]
@@ -138,8 +138,25 @@ def _block_values(
     return values, points
 
 
+def _numbered(blocks: Ids, across: int) -> Callable[[Ids], NDArray[np.int32]]:
+    """What gives the numbers of blocks by their coordinates, -1 where none was kept.
+
+    A table of the cube holds octets of blocks: one of single blocks takes gigabytes at 2048 cells.
+    """
+    octets = np.full((across // 2 + 1,) * 3, -1, np.int32)
+    octets[tuple(blocks.T >> 1)] = np.arange(len(blocks))
+    members = np.full((len(blocks), 2, 2, 2), -1, np.int32)
+    members[octets[tuple(blocks.T >> 1)], *(blocks.T & 1)] = np.arange(len(blocks))
+
+    def number_of(wanted: Ids) -> NDArray[np.int32]:
+        octet = octets[tuple(wanted.T >> 1)]
+        return np.where(octet < 0, np.int32(-1), members[octet, *(wanted.T & 1)])
+
+    return number_of
+
+
 def _own_values(network: Network, blocks: Ids, cell: float) -> Floats:
-    """The field at the points that blocks own, (b, 4, 4, 4)."""
+    """The field at the points that blocks own, (b, 2, 2, 2)."""
     inner = _lattice(BLOCK)
     own = np.empty((len(blocks), BLOCK**3), np.float32)
     for start in range(0, len(blocks), TOGETHER):
