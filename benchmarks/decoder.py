@@ -178,6 +178,7 @@ def measured_asset(model: Path, assets: Path) -> Record:
     document = unpack(model.read_bytes())
     source = assets / model.stem / f"{model.stem}.obj"
     return {
+        "commit": commit(),
         "queries": query_speed(document.sdf, document.chart, document.uv),
         "start_seconds": start_seconds(model),
         "extraction": extractions(model),
