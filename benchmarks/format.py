@@ -59,7 +59,7 @@ def targets(name: str) -> list[Target]:
 
 def made(width: int) -> bytes:
     """A file like an encoder's, of networks of four hidden layers of this width."""
-    uv = NetworkSpec((width,) * 4, 2, conditioning="embedding", charts=CHARTS, embedding=4)
+    uv = NetworkSpec((width,) * 4, 2, conditioning="frames", charts=CHARTS, embedding=4)
     image = BytesIO()
     Image.new("RGB", (8, 8), "tan").save(image, "PNG")
     document = Document(

@@ -36,7 +36,8 @@ from nispcodec.fit.task import Schedule, Task
 from nispcodec.fit.tickets import tickets
 from nispcodec.fit.train import train
 from nispcodec.mesh.load import load_mesh
-from nispcodec.mesh.samples import Sampler, SampleSet
+from nispcodec.mesh.sample_set import SampleSet
+from nispcodec.mesh.samples import Sampler
 from nispcodec.mesh.training import training_sets
 from nispcodec.network import Network, NetworkSpec
 from nispcodec.output import write_atomic
@@ -60,7 +61,7 @@ def networks(path: Path, steps: int) -> dict[str, Task]:
     sampler = Sampler(load_mesh(path), SAMPLER_SEED, GAP)
     sets, charts = training_sets(sampler), len(sampler.table)
     sdf = NetworkSpec((32,) * 4, 1)
-    uv = NetworkSpec((24,) * 3, 2, conditioning="embedding", charts=charts, embedding=4)
+    uv = NetworkSpec((24,) * 3, 2, conditioning="frames", charts=charts, embedding=4)
     distance, skin = (sets.distance, sets.held_distance), (sets.skin, sets.held_skin)
     schedule = Schedule(steps, BATCH)
     return {

@@ -18,7 +18,9 @@ from nispcodec.errors import FormatError
 Weights = NDArray[np.float32]
 
 ENCODINGS = ("identity", "fourier")
-CONDITIONINGS = ("none", "scalar", "embedding")
+CONDITIONINGS = ("none", "scalar", "embedding", "frames")
+TABLES = ("embedding", "slopes", "offsets")
+"""Tensors with a row for each chart."""
 ACTIVATIONS = ("sine", "relu")
 OUTPUTS = ("identity", "tanh", "sigmoid")
 
@@ -35,7 +37,9 @@ class NetworkSpec:
                  i = 0 ... levels-1 (paper, eq. 7), coordinate after coordinate
     conditioning how the chart number c of `charts` enters: "none"; "scalar": (2c + 1) / charts - 1
                  is a fourth coordinate, encoded like the others; "embedding": row c of a table of
-                 `embedding` numbers a chart is appended to the encoded point
+                 `embedding` numbers a chart is appended to the encoded point; "frames": that, and
+                 an affine map of the coordinates, row c of `slopes` and `offsets`, is added to
+                 what the last layer gives
     hidden       widths of the hidden layers
     activation   "sine": sin(w0 (W x + b)); "relu": max(0, W x + b)
     output       activation of the last layer
@@ -68,7 +72,7 @@ class NetworkSpec:
         fourier, conditioned = self.encoding == "fourier", self.conditioning != "none"
         _within("levels", self.levels, int(fourier), 16 if fourier else 0)
         _within("charts", self.charts, int(conditioned), MAX_CHARTS if conditioned else 0)
-        embedded = self.conditioning == "embedding"
+        embedded = self.conditioning in ("embedding", "frames")
         _within("embedding", self.embedding, int(embedded), 64 if embedded else 0)
         if not 0 < self.w0 <= 1000:
             raise FormatError("network", "w0", "a number in (0, 1000]", self.w0)
@@ -88,9 +92,14 @@ class NetworkSpec:
         return tuple(axis for axis in range(3) if self.mirror >> 3 + axis & 1)
 
     @property
+    def coordinates(self) -> int:
+        """How many coordinates of the point enter, before encoding."""
+        return 3 + len(self.sided)
+
+    @property
     def inputs(self) -> int:
         """Width of the first layer's input, after encoding and conditioning."""
-        coordinates = 3 + len(self.sided) + (self.conditioning == "scalar")
+        coordinates = self.coordinates + (self.conditioning == "scalar")
         encoded = coordinates * (2 * self.levels if self.encoding == "fourier" else 1)
         return encoded + self.embedding
 
@@ -99,8 +108,11 @@ class NetworkSpec:
         """Name and shape of every weight tensor, in file order."""
         widths = (self.inputs, *self.hidden, self.outputs)
         shapes: dict[str, tuple[int, ...]] = {}
-        if self.conditioning == "embedding":
+        if self.embedding:
             shapes["embedding"] = (self.charts, self.embedding)
+        if self.conditioning == "frames":
+            shapes["slopes"] = (self.charts, self.outputs * self.coordinates)
+            shapes["offsets"] = (self.charts, self.outputs)
         for layer, (fan_in, fan_out) in enumerate(pairwise(widths)):
             shapes[f"weight.{layer}"] = (fan_out, fan_in)
             shapes[f"bias.{layer}"] = (fan_out,)
@@ -108,7 +120,7 @@ class NetworkSpec:
 
     @property
     def weight_count(self) -> int:
-        """How many numbers the network has, biases and embedding included."""
+        """How many numbers the network has, biases and tables included."""
         return sum(int(np.prod(shape)) for shape in self.shapes.values())
 
 

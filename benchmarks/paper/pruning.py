@@ -33,7 +33,8 @@ from nispcodec.fit.task import Task
 from nispcodec.fit.tickets import tickets
 from nispcodec.fit.train import train
 from nispcodec.mesh.load import load_mesh
-from nispcodec.mesh.samples import BETA, Sampler, SampleSet
+from nispcodec.mesh.sample_set import SampleSet
+from nispcodec.mesh.samples import BETA, Sampler
 from nispcodec.mesh.training import SKIN, TrainingSets
 from nispcodec.network import Network
 from nispcodec.output import write_atomic

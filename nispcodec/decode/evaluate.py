@@ -100,11 +100,14 @@ class _Forward:
             for (weight, bias), scale in zip(network.layers, scales, strict=True)
         ]
         self.by_chart: Floats | None = None
-        if self.spec.conditioning == "embedding":
+        if self.spec.embedding:
             # The embedding meets the first layer only: one column of products for each chart.
             first, width = self.layers[0], self.spec.embedding
             self.by_chart = first[:, -1 - width : -1] @ network.tensors["embedding"].T
             self.layers[0] = np.hstack([first[:, : -1 - width], first[:, -1:]])
+        self.frames: Floats | None = None
+        if self.spec.conditioning == "frames":
+            self.frames = _frames(network)
         self.mirrored = np.array(self.spec.mirrored)[:, None]
         self._own = local()
 
@@ -117,10 +120,23 @@ class _Forward:
             following[-1] = 1
             np.matmul(layer, activations, out=following[:-1])
             if index == 0 and self.by_chart is not None and charts is not None:
-                following[:-1] += self.by_chart[:, charts]
+                following[:-1] += self.by_chart.take(charts, axis=1)
             self._activate(following[:-1])
             activations = following
-        return self._output(self.layers[-1] @ activations)
+        outputs = self.layers[-1] @ activations
+        if self.frames is not None and charts is not None:
+            outputs += self._framed(points, charts)
+        return self._output(outputs)
+
+    def _framed(self, points: Floats, charts: Charts) -> Floats:
+        """The affine map of each point's chart (outputs, n)."""
+        assert self.frames is not None
+        coordinates = self._coordinates(points)
+        slopes = self.frames.take(charts, axis=2)
+        framed = slopes[:, -1]
+        for axis, coordinate in enumerate(coordinates):
+            framed += slopes[:, axis] * coordinate
+        return framed
 
     def _buffers(self, count: int) -> Floats:
         """Room for two layers (2, width + 1, count), the thread's own: new memory costs time."""
@@ -149,10 +165,7 @@ class _Forward:
         return value[0], slope.T
 
     def _input(self, points: Floats, charts: Charts | None) -> Floats:
-        coordinates = points.T
-        if self.spec.mirror:
-            folded = np.where(self.mirrored, np.abs(coordinates), coordinates)
-            coordinates = np.vstack([folded, coordinates[list(self.spec.sided)]])
+        coordinates = self._coordinates(points)
         if self.spec.conditioning == "scalar" and charts is not None:
             scalar = (2 * charts + 1).astype(np.float32) / np.float32(self.spec.charts) - 1
             coordinates = np.vstack([coordinates, scalar.astype(np.float32)])
@@ -163,6 +176,14 @@ class _Forward:
         rows = np.empty((len(coordinates) + 1, len(points)), np.float32)
         rows[:-1], rows[-1] = coordinates, 1
         return rows
+
+    def _coordinates(self, points: Floats) -> Floats:
+        """What of the points (n, 3) enters: (3, n), and a row for each coordinate that follows."""
+        coordinates = points.T
+        if not self.spec.mirror:
+            return coordinates
+        folded = np.where(self.mirrored, np.abs(coordinates), coordinates)
+        return np.vstack([folded, coordinates[list(self.spec.sided)]])
 
     def _through_encoding(self, encoded: Floats, slope: Floats) -> Floats:
         if self.spec.encoding == "identity":
@@ -215,6 +236,14 @@ def _folded(weight: Floats, bias: Floats, scale: np.float32) -> Floats:
     np.multiply(weight, scale, out=layer[:, :-1])
     np.multiply(bias, scale, out=layer[:, -1])
     return layer
+
+
+def _frames(network: Network) -> Floats:
+    """(outputs, coordinates + 1, charts): the slopes of each output, then its offset."""
+    slopes, offsets = network.tensors["slopes"], network.tensors["offsets"]
+    each = slopes.reshape(len(slopes), network.spec.outputs, -1)
+    rows = np.concatenate([each, offsets[:, :, None]], axis=2)
+    return np.ascontiguousarray(np.moveaxis(rows, 0, 2))
 
 
 def _in_blocks(run: Callable[[slice], None], spec: NetworkSpec, count: int) -> None:

@@ -11,6 +11,9 @@ from nispcodec.fit.task import Batch
 NEAR = 0.01
 """Distances (normalised frame) well below this count in full in the relative loss."""
 
+FAR_OFF = 0.01
+"""A UV that is further off than this is wrong, however far."""
+
 SIGN_WEIGHT = 1.8
 """Below 2 the loss is least where the field is the distance; above, near points are pushed away."""
 SIGN_SOFTNESS = 2e-3
@@ -50,5 +53,9 @@ def uv_loss(module: Module, batch: Batch) -> Tensor:
 
 
 def uv_error(module: Module, batch: Batch) -> Tensor:
-    """Mean distance in the network's UV square, given the true chart."""
-    return (module(batch.points, batch.chart) - batch.uv).norm(dim=1).mean()
+    """Mean distance in the network's UV square, given the true chart; `FAR_OFF` where it is more.
+
+    Without that limit a few hard places decide how wide a network is taken for all the rest.
+    """
+    off = (module(batch.points, batch.chart) - batch.uv).norm(dim=1)
+    return off.clamp(max=FAR_OFF).mean()

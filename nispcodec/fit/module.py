@@ -12,7 +12,7 @@ from torch.nn import functional
 
 from nispcodec.fit.prune import Mask
 from nispcodec.fit.quantise import FIRST_BITS, Quantiser, snapped
-from nispcodec.network import Network, NetworkSpec, Weights
+from nispcodec.network import TABLES, Network, NetworkSpec, Weights
 
 
 class Module:
@@ -53,8 +53,8 @@ class Module:
     def matrices(self, last: float) -> list[tuple[Tensor, float]]:
         """What a preconditioner sees together, and its rate relative to the schedule's.
 
-        Of each layer [W | b] and the embedding: where its numbers are in the vector. `last` is the
-        rate of the last layer.
+        Of each layer [W | b], and of the tables a row for each chart: where its numbers are in the
+        vector. `last` is the rate of the last layer.
         """
         places = self._parts(torch.arange(len(self.weights)))
         count, scales = len(self.spec.hidden), self.scales
@@ -62,19 +62,30 @@ class Module:
             (torch.cat([places[f"weight.{i}"], places[f"bias.{i}"][:, None]], dim=1), rate)
             for i, rate in enumerate([*(scales[f"weight.{i}"] for i in range(count)), last])
         ]
-        return matrices + [(places[name], 1.0) for name in places if name == "embedding"]
+        tables = [places[name] for name in TABLES if name in places]
+        return matrices + ([(torch.cat(tables, dim=1), 1.0)] if tables else [])
+
+    def place_frames(self, slopes: Weights, offsets: Weights) -> None:
+        """Start from these affine maps: (charts, outputs x coordinates), (charts, outputs)."""
+        parts = self._parts(self.weights.detach())
+        parts["slopes"].copy_(torch.from_numpy(slopes))
+        parts["offsets"].copy_(torch.from_numpy(offsets))
 
     def __call__(self, points: Tensor, charts: Tensor | None = None) -> Tensor:
         """(n, 3) points, (n,) chart numbers -> (n, outputs)."""
         used = self.weights if self.kept is None else self.weights * self.kept
         used = used if self.quantiser is None else self.quantiser.rounded(used)
         parts = self._parts(used)
-        hidden = self._encoded(points, charts, parts.get("embedding"))
+        points = self._coordinates(points)
+        rows = self._rows(parts, charts)
+        hidden = self._encoded(points, charts, rows)
         activation = torch.sin if self.spec.activation == "sine" else functional.relu
         last = len(self.spec.hidden)
         for i in range(last):
             hidden = activation(functional.linear(hidden, parts[f"weight.{i}"], parts[f"bias.{i}"]))
         output = functional.linear(hidden, parts[f"weight.{last}"], parts[f"bias.{last}"])
+        if self.spec.conditioning == "frames":
+            output = output + self._framed(points, rows)
         return _OUTPUTS[self.spec.output](output)
 
     def prune(self, mask: Mask) -> None:
@@ -125,20 +136,33 @@ class Module:
         groups = torch.repeat_interleave(torch.arange(len(counts)), counts)
         return groups.to(self.weights.device)
 
-    def _encoded(self, points: Tensor, charts: Tensor | None, table: Tensor | None) -> Tensor:
+    def _coordinates(self, points: Tensor) -> Tensor:
+        if not self.spec.mirror:
+            return points
+        folded = torch.where(self.mirrored, points.abs(), points)
+        return torch.cat([folded, *(points[:, axis : axis + 1] for axis in self.spec.sided)], dim=1)
+
+    def _rows(self, parts: dict[str, Tensor], charts: Tensor | None) -> Tensor:
+        """What the tables say of each point's chart, side by side."""
+        tables = [parts[name] for name in TABLES if name in parts]
+        if not tables or charts is None:
+            return torch.zeros(0)
+        return functional.embedding(charts, torch.cat(tables, dim=1))
+
+    def _framed(self, points: Tensor, rows: Tensor) -> Tensor:
+        """The affine map of each point's chart (n, outputs)."""
+        outputs = self.spec.outputs
+        slopes = rows[:, self.spec.embedding : -outputs].view(len(points), outputs, -1)
+        return rows[:, -outputs:] + (slopes @ points[:, :, None])[:, :, 0]
+
+    def _encoded(self, points: Tensor, charts: Tensor | None, rows: Tensor) -> Tensor:
         spec = self.spec
-        if spec.mirror:
-            folded = torch.where(self.mirrored, points.abs(), points)
-            sides = [points[:, axis : axis + 1] for axis in spec.sided]
-            points = torch.cat([folded, *sides], dim=1)
         if spec.conditioning == "scalar" and charts is not None:
             scalar = (2 * charts[:, None] + 1) / spec.charts - 1
             points = torch.cat([points, scalar.to(points.dtype)], dim=1)
         if spec.encoding == "fourier":
             points = _fourier(points, spec.levels)
-        if table is not None and charts is not None:
-            points = torch.cat([points, functional.embedding(charts, table)], dim=1)
-        return points
+        return torch.cat([points, rows[:, : spec.embedding]], dim=1) if spec.embedding else points
 
 
 def _fourier(points: Tensor, levels: int) -> Tensor:
@@ -158,6 +182,9 @@ def _initial(spec: NetworkSpec, generator: torch.Generator) -> dict[str, Tensor]
         tensors |= {f"weight.{layer}": weight, f"bias.{layer}": bias}
     if spec.embedding:
         tensors["embedding"] = torch.randn(spec.charts, spec.embedding, generator=generator)
+    for name in ("slopes", "offsets"):
+        if name in spec.shapes:
+            tensors[name] = torch.zeros(spec.shapes[name])
     return tensors
 
 

@@ -15,8 +15,9 @@ from nispcodec.fit.losses import (
 )
 from nispcodec.fit.sizes import FINE, LAYERS, Widths
 from nispcodec.fit.task import Schedule, Task
-from nispcodec.mesh.mirror import Mirrors, mirrors
-from nispcodec.mesh.samples import Sampler, SampleSet
+from nispcodec.mesh.mirror import Mirrors
+from nispcodec.mesh.sample_set import SampleSet
+from nispcodec.mesh.samples import Sampler
 from nispcodec.mesh.solid import area
 from nispcodec.mesh.training import TrainingSets
 from nispcodec.network import NetworkSpec
@@ -33,10 +34,11 @@ BATCHES = {"sdf": 2048, "chart": 1024, "uv": 2048}
 WIDE, WIDE_BATCH = 36, 1024
 """An SDF so wide, unless it learns slowly, does better with more and smaller steps."""
 
-SHARES = {"sdf": 1.0, "chart": 0.35, "uv": 0.65}
+SHARES = {"sdf": 1.0, "chart": 0.35, "uv": 0.47}
 """Of the seconds: the SDF has a core to itself, charts and UVs share the other."""
 
-RATE, FINE_RATE = 1e-3, 5e-4
+RATES = {"sdf": 1e-3, "chart": 3e-3, "uv": 1e-3}
+FINE_RATE = 5e-4
 FINE_TIME = 0.87
 """Assets of fine detail take longer to read and to sample: their fits give that time back."""
 
@@ -89,7 +91,7 @@ class Problem:
         """The problem of a sampled asset."""
         table = sampler.table
         surface = float(area(sampler.solid.pieces).sum())
-        return Problem(sets, len(table), bool(table.has_uv.any()), surface, mirrors(sampler))
+        return Problem(sets, len(table), bool(table.has_uv.any()), surface, sampler.mirrors)
 
     @property
     def networks(self) -> tuple[str, ...]:
@@ -110,7 +112,7 @@ class Problem:
         return NetworkSpec(
             hidden,
             2,
-            conditioning="embedding",
+            conditioning="frames",
             charts=self.charts,
             embedding=EMBEDDING,
             mirror=self.mirrors.uv,
@@ -148,7 +150,7 @@ def sine_tasks(
         schedule = replace(
             _schedule(name, steps, effort.band),
             batch=batch,
-            rate=FINE_RATE if fine and name == "sdf" else RATE,
+            rate=FINE_RATE if fine and name == "sdf" else RATES[name],
             price=PRICES[name],
             budget=budgets.get(name, 0.0),
             reviews=effort.reviews if name == "sdf" else 0,
@@ -159,8 +161,8 @@ def sine_tasks(
 
 def _schedule(name: str, steps: int, band: float) -> Schedule:
     if name != "sdf":
-        return Schedule(steps, BATCHES[name], RATE)
-    return Schedule(steps, BATCHES[name], RATE, band=band, last=SDF_LAST)
+        return Schedule(steps, BATCHES[name], RATES[name])
+    return Schedule(steps, BATCHES[name], RATES[name], band=band, last=SDF_LAST)
 
 
 def steps_in(seconds: float, spec: NetworkSpec, batch: int) -> int:

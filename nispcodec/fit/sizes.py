@@ -40,8 +40,8 @@ class Model:
 
 MODELS = {
     "sdf": Model(30, 1.0e-3, 0.7, 22, 46),
-    "chart": Model(24, 0.05, 0.3, 14, 56),
-    "uv": Model(22.5, 1.5e-3, 0.6, 16, 56),
+    "chart": Model(21, 0.03, 0.4, 18, 48),
+    "uv": Model(21, 9.3e-4, 0.6, 14, 56),
 }
 
 AREA, AREA_POWER = 5.0, 0.4

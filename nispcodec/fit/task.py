@@ -10,7 +10,7 @@ from torch import Tensor
 
 from nispcodec.fit.module import Module
 from nispcodec.fit.prune import Pruning
-from nispcodec.mesh.samples import SampleSet
+from nispcodec.mesh.sample_set import SampleSet
 from nispcodec.network import NetworkSpec
 
 
@@ -36,13 +36,16 @@ class Batch:
     def __len__(self) -> int:
         return len(self.points)
 
-    def __getitem__(self, rows: Tensor | slice) -> Batch:
-        return Batch(self.points[rows], self.sdf[rows], self.chart[rows], self.uv[rows])
+    def chosen(self, rows: Tensor) -> Batch:
+        """The points with these numbers; `index_select` is several times as fast as brackets."""
+        everything = (self.points, self.sdf, self.chart, self.uv)
+        return Batch(*(part.index_select(0, rows) for part in everything))
 
     def parts(self, size: int) -> Iterator[Batch]:
         """The batches of `size` points that this one holds; points left over are left out."""
         for start in range(0, len(self) - size + 1, size):
-            yield self[start : start + size]
+            rows = slice(start, start + size)
+            yield Batch(self.points[rows], self.sdf[rows], self.chart[rows], self.uv[rows])
 
 
 Objective = Callable[[Module, Batch], Tensor]

@@ -11,6 +11,7 @@ import torch
 from torch import Tensor
 
 from nispcodec.errors import FitError
+from nispcodec.fit.frames import affine_maps
 from nispcodec.fit.module import Module
 from nispcodec.fit.prune import Mask
 from nispcodec.fit.quantise import FIRST_BITS, Quantiser
@@ -69,6 +70,8 @@ class _Run:
         self.listen = listen
         self.generator = torch.Generator().manual_seed(seed)
         self.module = Module(task.spec, self.generator, device, task.schedule.band)
+        if task.spec.conditioning == "frames":
+            self.module.place_frames(*affine_maps(task.spec, task.samples))
         self.held_out = Batch.of(task.held_out, device)
         self.samples = Batch.of(task.samples, device)
         self.reached = torch.zeros(len(self.samples))
@@ -137,23 +140,24 @@ class _Run:
         self.batches = self._batches()
 
     def _batches(self) -> Iterator[Batch]:
-        """Rounds of all samples and, where some reach, as many again drawn by their reach.
+        """Rounds of all samples in random order; a batch never straddles two rounds.
 
-        In random order; a batch never straddles two rounds.
+        Where some reach, every other sample is one of these, drawn by its reach.
         """
         count, generator = len(self.samples), self.generator
         size = min(self.task.schedule.batch, count)
+        reaching = self.reached.nonzero()[:, 0]
         while True:
             order = torch.randperm(count, generator=generator)
-            if bool(self.reached.any()):
-                again = torch.multinomial(self.reached, count, True, generator=generator)
-                both = torch.cat([order, again])
-                order = both[torch.randperm(len(both), generator=generator)]
-            yield from self.samples[order.to(self.samples.points.device)].parts(size)
+            if len(reaching):
+                reach = self.reached[reaching]
+                again = torch.multinomial(reach, count, True, generator=generator)
+                order = torch.stack([order, reaching[again]], dim=1).flatten()
+            yield from self.samples.chosen(order.to(self.samples.points.device)).parts(size)
 
     def _charge(self, quantiser: Quantiser, learn: bool) -> None:
         schedule = self.task.schedule
-        price = schedule.price * self.loss / self.task.spec.weight_count
+        price = schedule.price * self.loss / len(self.module.weights)
         rate = quantiser.charge(self.module.weights, price)
         if learn:
             quantiser.learn(rate - schedule.budget if schedule.budget else 0.0)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any, TypeVar
 
@@ -9,9 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
-from scipy.spatial import cKDTree
 
-from nispcodec.asset import FloatArray, IndexArray, TexturedMesh
+from nispcodec.asset import IndexArray, TexturedMesh
 
 Kind = TypeVar("Kind")
 
@@ -44,76 +44,40 @@ def split_charts(mesh: TexturedMesh) -> Charts:
     return Charts(labels, mesh.face_materials[first], mesh.has_uv[first])
 
 
-def merge_distant(
-    charts: Charts, points: FloatArray, point_charts: NDArray[np.integer], gap: float
-) -> Charts:
-    """Let charts of one material that are everywhere further apart than `gap` share a number.
-
-    A position tells such charts apart already, so the networks need a number only to keep
-    neighbours apart: some hundred charts become a dozen labels. points (n, 3) cover the visible
-    surface.
-    """
-    kinds = list(zip(charts.materials.tolist(), charts.has_uv.tolist(), strict=True))
-    labels, kind = colored(_neighbours(len(charts), points, point_charts, gap), kinds)
-    return Charts(
-        np.asarray(labels, dtype=np.int32)[charts.face_charts],
-        np.asarray([material for material, _ in kind], dtype=np.int32),
-        np.asarray([has_uv for _, has_uv in kind], dtype=bool),
-    )
-
-
-def colored(neighbours: list[set[int]], kinds: list[Kind]) -> tuple[list[int], list[Kind]]:
+def colored(
+    neighbours: list[set[int]],
+    kinds: list[Kind],
+    palette: Sequence[Kind] = (),
+    choose: Callable[[int, Sequence[int]], int] = lambda node, colors: colors[0],
+) -> tuple[list[int], list[Kind]]:
     """Colour a graph so that neighbours differ and every colour is of one kind.
 
-    Returns each node's colour and each colour's kind. Most constrained node first (Welsh and
-    Powell 1967).
+    Returns each node's colour and each colour's kind: those of the `palette` to begin with, and one
+    more whenever no other is left; of several `choose(node, colours)` takes one. Most constrained
+    node first (Welsh and Powell 1967).
     """
     color = [-1] * len(neighbours)
-    kind_of_color: list[Kind] = []
+    kind_of_color = list(palette)
     for node in sorted(range(len(neighbours)), key=lambda n: -len(neighbours[n])):
         taken = {color[other] for other in neighbours[node]}
-        alike = (c for c, k in enumerate(kind_of_color) if k == kinds[node] and c not in taken)
-        color[node] = next(alike, len(kind_of_color))
-        if color[node] == len(kind_of_color):
+        alike = [c for c, k in enumerate(kind_of_color) if k == kinds[node] and c not in taken]
+        if not alike:
+            alike = [len(kind_of_color)]
             kind_of_color.append(kinds[node])
+        color[node] = choose(node, alike)
     return color, kind_of_color
-
-
-def _neighbours(
-    count: int, points: FloatArray, charts: NDArray[np.integer], gap: float
-) -> list[set[int]]:
-    """For each of `count` charts, the others that come closer than `gap`.
-
-    Told by cells of that size and their neighbours, so that memory is bounded by the points: some
-    charts up to a few times as far apart count as well.
-    """
-    cells, cell = np.unique(np.floor(points / gap), axis=0, return_inverse=True)
-    shape = (len(cells), count)
-    there = coo_matrix((np.ones(len(cell), dtype=bool), (cell.reshape(-1), charts)), shape=shape)
-    adjacent = (there.T @ (_near_cells(cells) @ there)).tocoo()
-    neighbours: list[set[int]] = [set() for _ in range(count)]
-    for one, other in zip(adjacent.row.tolist(), adjacent.col.tolist(), strict=True):
-        if one != other:
-            neighbours[one].add(other)
-    return neighbours
-
-
-def _near_cells(cells: FloatArray) -> coo_matrix:
-    """(c, c) bool: cells (c, 3) of integers that touch, themselves included."""
-    pairs = cKDTree(cells).query_pairs(1.0, p=np.inf, output_type="ndarray")
-    own = np.arange(len(cells))
-    rows = np.concatenate([pairs[:, 0], pairs[:, 1], own])
-    columns = np.concatenate([pairs[:, 1], pairs[:, 0], own])
-    size = (len(cells), len(cells))
-    return coo_matrix((np.ones(len(rows), dtype=bool), (rows, columns)), shape=size).tocsr()
 
 
 def row_ids(rows: NDArray[np.number[Any]]) -> NDArray[np.int64]:
     """(n, c) -> (n,): equal rows get equal numbers."""
     if not len(rows):
         return np.zeros(0, dtype=np.int64)
-    # Adding zero makes -0.0 the same as 0.0, which np.unique tells apart.
-    return np.unique(rows + rows.dtype.type(0), axis=0, return_inverse=True)[1].reshape(-1)
+    # Several times as fast as np.unique over an axis.
+    order = np.lexsort(rows.T[::-1])
+    is_new = (rows[order[1:]] != rows[order[:-1]]).any(axis=1)
+    ids = np.zeros(len(rows), dtype=np.int64)
+    ids[order[1:]] = np.cumsum(is_new)
+    return ids
 
 
 def uv_ids(mesh: TexturedMesh) -> NDArray[np.int64]:

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from nispcodec.asset import FloatArray
 from nispcodec.mesh.solid import SHELL, Solid, Triangles
+from nispcodec.mesh.z_order import z_order
 
 
 @dataclass(frozen=True)
@@ -71,5 +72,8 @@ class _Tree:
         if not len(self.faces) or not len(points):
             nowhere = np.zeros(len(points), dtype=np.int64)
             return Closest(np.full(len(points), np.inf), nowhere, np.zeros_like(points))
-        squared, face, point = self.tree.squared_distance(self.vertices, self.faces, points)
+        order = z_order(points)
+        back = np.argsort(order)
+        found = self.tree.squared_distance(self.vertices, self.faces, points[order])
+        squared, face, point = (each[back] for each in found)
         return Closest(np.sqrt(squared), self.index[face], point)

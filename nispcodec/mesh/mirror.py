@@ -6,13 +6,16 @@ number. There the network is told |x| and x, and has to hold the half and what d
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from nispcodec.asset import FloatArray
-from nispcodec.mesh.samples import Sampler, SampleSet, uniform_surface
+from nispcodec.mesh.points import uniform_surface
+from nispcodec.mesh.sample_set import SampleSet
+from nispcodec.mesh.solid import Triangles
 
 PROBES = 2_000
 JITTER = 5e-3
@@ -33,6 +36,9 @@ MOSTLY_SDF, MOSTLY_UV = 0.97, 0.9
 Of a surface less alike (gz_polaris, 0.965) ghosts appear on the wrong side; a UV network has none.
 """
 
+TWIN = 0.5
+"""The share of a chart's points whose image lies on its twin; charts may be cut differently."""
+
 
 @dataclass(frozen=True)
 class Mirrors:
@@ -42,16 +48,20 @@ class Mirrors:
     uv: int
 
 
-def mirrors(sampler: Sampler) -> Mirrors:
+Label = Callable[[FloatArray], SampleSet]
+"""What there is at points (n, 3) of the normalised frame."""
+
+
+def mirrors(label: Label, pieces: Triangles) -> Mirrors:
     """About which of the planes x, y, z = 0 of the normalised frame an asset is symmetric.
 
-    Told by the same random points for every seed; what the sampler draws next is not touched.
+    Told by random points around its `pieces` (p, 3, 3), always the same.
     """
-    points = _probes(sampler, np.random.default_rng(0))
-    here = sampler.label(points)
+    points = _probes(pieces)
+    here = label(points)
     sdf = uv = 0
-    for axis, signs in enumerate(1.0 - 2.0 * np.eye(3)):
-        there = sampler.label(points * signs)
+    for axis in range(3):
+        there = label(points * _flip(axis))
         whole, sided = 1 << axis, 9 << axis
         off = np.abs(there.sdf - here.sdf)
         if off.mean() < SYMMETRIC:
@@ -63,21 +73,51 @@ def mirrors(sampler: Sampler) -> Mirrors:
     return Mirrors(sdf, uv)
 
 
-def unlike(sampler: Sampler, count: int, spread: float) -> list[SampleSet]:
+def unlike(label: Label, near: SampleSet, sided: int) -> list[SampleSet]:
     """For each axis that is told by its side, samples where the asset is not like its image.
 
-    Of `count` mirror images of points near the surface those whose distance is another one: a
-    network that is told |x| puts a ghost of what is on one side only there, and no other samples
-    would see it.
+    Of the mirror images of points near the surface those whose distance is another one: a network
+    that is told |x| puts a ghost of what is on one side only there, and no other samples would see
+    it. `sided` has a bit for each axis.
     """
-    near = sampler.near(count, spread)
-    sided = mirrors(sampler).sdf >> 3
     found = []
-    for axis, signs in enumerate(1.0 - 2.0 * np.eye(3)):
-        if sided >> axis & 1:
-            there = sampler.label(near.points * signs)
-            found.append(there[np.abs(there.sdf - near.sdf) > ALIKE])
+    for axis in _axes(sided):
+        there = label(near.points * _flip(axis))
+        found.append(there[np.abs(there.sdf - near.sdf) > ALIKE])
     return found
+
+
+def twins(label: Label, surface: SampleSet, mirrored: int) -> NDArray[np.int64]:
+    """Pairs (t, 2) of charts that are mirror images of each other, with the same UVs.
+
+    Most of a chart's points of the `surface` have their image on its twin. `mirrored` has a bit for
+    each axis.
+    """
+    sizes = np.bincount(surface.chart)
+    found = [np.zeros((0, 2), dtype=np.int64)]
+    for axis in _axes(mirrored):
+        there = label(surface.points * _flip(axis))
+        same = (np.abs(there.sdf - surface.sdf) < ALIKE) & _same_uv(surface, there)
+        both = np.stack([surface.chart, there.chart], axis=1)[same]
+        pairs, points = np.unique(both, axis=0, return_counts=True)
+        found.append(pairs[points >= TWIN * sizes[pairs[:, 0]]].astype(np.int64))
+    return np.concatenate(found)
+
+
+def folded(points: FloatArray, mirrored: int) -> FloatArray:
+    """(n, 3) with the absolute value of the axes that have a bit in `mirrored`."""
+    bits = [bool(mirrored >> axis & 1) for axis in range(3)]
+    return np.where(bits, np.abs(points), points)
+
+
+def _axes(bits: int) -> list[int]:
+    return [axis for axis in range(3) if bits >> axis & 1]
+
+
+def _flip(axis: int) -> FloatArray:
+    signs = np.ones(3)
+    signs[axis] = -1
+    return signs
 
 
 def _same_uv(here: SampleSet, there: SampleSet) -> NDArray[np.bool_]:
@@ -85,7 +125,8 @@ def _same_uv(here: SampleSet, there: SampleSet) -> NDArray[np.bool_]:
     return same
 
 
-def _probes(sampler: Sampler, random: np.random.Generator) -> FloatArray:
+def _probes(pieces: Triangles) -> FloatArray:
     """(PROBES, 3) points on either side of the surface, near enough for any part to be seen."""
-    surface, _ = uniform_surface(random, sampler.solid.pieces, PROBES)
+    random = np.random.default_rng(0)
+    surface, _ = uniform_surface(random, pieces, PROBES)
     return surface + random.normal(scale=JITTER, size=surface.shape)

@@ -1,19 +1,24 @@
-"""Labelled training points: where they lie, how far from the surface, on which chart, which UV."""
+"""The sampler: draws points around a mesh and labels them."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
 
-from nispcodec.asset import FloatArray, IndexArray, TexturedMesh
+from nispcodec.asset import FloatArray, TexturedMesh
 from nispcodec.document import ChartTable, Frame
-from nispcodec.mesh.charts import Charts, merge_distant, split_charts
+from nispcodec.mesh.charts import Charts, split_charts
 from nispcodec.mesh.distance import Closest, DistanceField
+from nispcodec.mesh.merge import Cover, merge_charts
+from nispcodec.mesh.mirror import folded, mirrors, twins, unlike
 from nispcodec.mesh.openings import crossings, spread_over
+from nispcodec.mesh.points import barycentric, uniform_ball, uniform_surface
+from nispcodec.mesh.sample_set import Floats, SampleSet
 from nispcodec.mesh.self_seams import split_self_seams
-from nispcodec.mesh.solid import Triangles, area, build_solid
+from nispcodec.mesh.solid import build_solid
 
 BETA = 60.0
 """Importance exp(-BETA |SDF|) of a point (paper, eq. 5)."""
@@ -28,53 +33,19 @@ OPENING_PROBES = 50_000
 OPENING_SHARE = 5e-4
 """From this share of probes near the surface that cross a membrane on, openings get a chart."""
 
-MUCH_HIDDEN = 0.05
-"""From this share of hidden area on, an opening would show that what was inside is gone."""
-
 FULL = 0.95
 """UVs that fill so much of the unit square in both directions stay as they are: no map to store."""
 
 MEMBRANE_JITTER = 5e-3
 """How far off a membrane (normalised frame) a network may put it."""
 
-Floats = NDArray[np.float32]
-
-
-@dataclass(frozen=True)
-class SampleSet:
-    """n labelled points, normalised frame: points (n, 3), sdf (n,), chart (n,), uv (n, 2).
-
-    uv is the UV network's target: the asset's UV mapped to [0, 1] by the chart table, (0, 0) on
-    charts without UV.
-    """
-
-    points: Floats
-    sdf: Floats
-    chart: IndexArray
-    uv: Floats
-
-    @staticmethod
-    def joined(parts: tuple[SampleSet, ...]) -> SampleSet:
-        """All parts, one after the other."""
-        return SampleSet(
-            np.concatenate([part.points for part in parts]),
-            np.concatenate([part.sdf for part in parts]),
-            np.concatenate([part.chart for part in parts]),
-            np.concatenate([part.uv for part in parts]),
-        )
-
-    def __len__(self) -> int:
-        return len(self.points)
-
-    def __getitem__(self, chosen: NDArray[np.bool_] | NDArray[np.integer] | slice) -> SampleSet:
-        return SampleSet(self.points[chosen], self.sdf[chosen], self.chart[chosen], self.uv[chosen])
-
 
 class Sampler:
     """Draws and labels points around one mesh.
 
     `gap` > 0 cuts charts that meet themselves (`split_self_seams`), then lets charts that are
-    further apart than that share a number (`merge_distant`), and gives openings a chart.
+    further apart than that share a number (`merge_charts`), and gives openings a chart. `mirrors`
+    says about which planes the asset is symmetric.
     """
 
     def __init__(self, mesh: TexturedMesh, seed: int, gap: float = 0.0) -> None:
@@ -88,11 +59,12 @@ class Sampler:
         if gap > 0:
             self.charts = split_self_seams(mesh, self.charts)
         self.patches = len(self.charts)
+        self.table = chart_table(mesh, self.charts)
+        self.mirrors = mirrors(self.label, self.solid.pieces)
+        self._crossings = np.zeros((0, 3))
         if gap > 0:
             self.charts = self._merged(gap)
-        self.table = chart_table(mesh, self.charts)
-        self._crossings = np.zeros((0, 3))
-        if gap > 0 and self.solid.hidden_share < MUCH_HIDDEN:
+            self.table = chart_table(mesh, self.charts)
             self._find_openings()
 
     def near(self, count: int, spread: float, signed: bool = True) -> SampleSet:
@@ -123,6 +95,11 @@ class Sampler:
     def surface(self, count: int) -> SampleSet:
         """Points uniform by area on the outer faces and sheets."""
         return self.label(self._surface(count)[0], signed=False)
+
+    def unlike(self, count: int, spread: float) -> list[SampleSet]:
+        """Of `count` mirror images of points near the surface those told by their side only."""
+        sided = self.mirrors.sdf >> 3
+        return unlike(self.label, self.near(count, spread), sided) if sided else []
 
     def membrane(self, count: int) -> SampleSet:
         """Points near where the SDF closes openings, on the openings' chart; 0 without openings."""
@@ -164,16 +141,16 @@ class Sampler:
         return uniform_surface(self._random, self.solid.pieces, count)
 
     def _merged(self, gap: float) -> Charts:
-        """Merge far charts, told by random points and one point of each piece of small charts."""
+        """Merge charts, told by random points and one point of each piece of small charts."""
         points, piece = self._surface(MERGE_POINTS)
         chart = self.charts.face_charts[self.solid.parents]
         rare = np.bincount(chart[piece], minlength=len(self.charts))[chart] < MERGE_RARE
-        return merge_distant(
-            self.charts,
-            np.concatenate([points, self.solid.pieces[rare].mean(axis=1)]),
-            np.concatenate([chart[piece], chart[rare]]),
-            gap,
-        )
+        points = np.concatenate([points, self.solid.pieces[rare].mean(axis=1)])
+        surface = self.label(points, signed=False)
+        seen, uvs = folded(points, self.mirrors.uv), surface.uv.astype(np.float64)
+        cover = Cover(points, surface.chart, seen, uvs)
+        alike = twins(partial(self.label, signed=False), surface, self.mirrors.uv)
+        return merge_charts(self.charts, cover, alike, gap)
 
     def _network_uv(self, closest: Closest, face: NDArray[np.int64]) -> Floats:
         weights = barycentric(self._corners[face], closest.point)
@@ -209,40 +186,3 @@ def chart_table(mesh: TexturedMesh, charts: Charts) -> ChartTable:
         uv_offset=(float(low[0]), float(low[1])),
         uv_scale=(float(scale[0]), float(scale[1])),
     )
-
-
-def barycentric(triangles: Triangles, points: FloatArray) -> FloatArray:
-    """Barycentric coordinates (n, 3) of points (n, 3) in the planes of triangles (n, 3, 3)."""
-    ab, ac = triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0]
-    ap = points - triangles[:, 0]
-    bb, bc, cc, pb, pc = (
-        (p * q).sum(axis=1) for p, q in ((ab, ab), (ab, ac), (ac, ac), (ap, ab), (ap, ac))
-    )
-    determinant = np.maximum(bb * cc - bc * bc, 1e-300)
-    v, w = (cc * pb - bc * pc) / determinant, (bb * pc - bc * pb) / determinant
-    weights = np.clip(np.stack([1 - v - w, v, w], axis=1), 0.0, 1.0)
-    return weights / weights.sum(axis=1, keepdims=True)
-
-
-def random_barycentric(random: np.random.Generator, count: int) -> FloatArray:
-    """(count, 3) barycentric coordinates, uniform over a triangle."""
-    root = np.sqrt(random.random(count))
-    second = random.random(count)
-    return np.stack([1 - root, root * (1 - second), root * second], axis=1)
-
-
-def uniform_surface(
-    random: np.random.Generator, pieces: Triangles, count: int
-) -> tuple[FloatArray, NDArray[np.int64]]:
-    """Points (count, 3) uniform by area on pieces (p, 3, 3), and the pieces they lie on."""
-    weight = area(pieces)
-    piece = random.choice(len(pieces), size=count, p=weight / weight.sum())
-    weights = random_barycentric(random, count)
-    return np.einsum("nc,ncx->nx", weights, pieces[piece]), piece
-
-
-def uniform_ball(random: np.random.Generator, count: int) -> FloatArray:
-    """(count, 3) points uniform in the unit ball."""
-    direction = random.normal(size=(count, 3))
-    direction /= np.linalg.norm(direction, axis=1, keepdims=True)
-    return direction * np.cbrt(random.random((count, 1)))

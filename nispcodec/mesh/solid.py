@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from nispcodec.asset import FloatArray
 from nispcodec.errors import MeshError
 from nispcodec.mesh.charts import connected_faces, row_ids
+from nispcodec.mesh.z_order import z_order
 
 OFFSET = 2e-3
 """How far off a face (normalised frame) one looks to tell which of its sides are inside."""
@@ -107,7 +108,9 @@ class Winding:
         """(n, 3) -> (n,)."""
         if self._empty or not len(points):
             return np.zeros(len(points))
-        number: FloatArray = self._tree.winding_number(np.ascontiguousarray(points), ACCURACY)
+        order = z_order(points)
+        number = np.empty(len(points))
+        number[order] = self._tree.winding_number(points[order], ACCURACY)
         return number
 
 

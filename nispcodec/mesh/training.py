@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from nispcodec.mesh.mirror import unlike
-from nispcodec.mesh.samples import BETA, Sampler, SampleSet
+from nispcodec.mesh.sample_set import SampleSet
+from nispcodec.mesh.samples import BETA, Sampler
 
 TIGHT = 1 / 300
 """Mean distance (normalised frame) of the samples that sharpen the zero set."""
@@ -47,7 +47,7 @@ def training_sets(sampler: Sampler) -> TrainingSets:
         sampler.near(TIGHT_COUNT, TIGHT),
         sampler.cube(CUBE_COUNT),
         sampler.near(WIDE_COUNT, WIDE),
-        *unlike(sampler, UNLIKE_COUNT, UNLIKE),
+        *sampler.unlike(UNLIKE_COUNT, UNLIKE),
     )
     return TrainingSets(
         distance=SampleSet.joined(distance),

@@ -150,6 +150,14 @@ def _topologies() -> Iterator[tuple[str, bytes]]:
         "scalar-mirror": {"conditioning": "scalar", "charts": 2, **fourier, "mirror": 0b010},
         "scalar-sided": {"conditioning": "scalar", "charts": 2, **fourier, "mirror": 0b010010},
         "embedding": {"conditioning": "embedding", "charts": 2, "embedding": 4},
+        "frames": {"conditioning": "frames", "charts": 2, "embedding": 4},
+        "frames-sided": {
+            "conditioning": "frames",
+            "charts": 2,
+            "embedding": 1,
+            "mirror": 0b001011,
+            "output": "sigmoid",
+        },
     }
     for name, options in uvs.items():
         document = dataclasses.replace(textured(), uv=network((10, 9), 2, 8, **options))

@@ -45,9 +45,15 @@ class Reader:
         coordinates = 3 + (made["mirror"] >> 3).bit_count() + (made["conditioning"] == "scalar")
         inputs = coordinates * (2 * made["levels"] if made["encoding"] == "fourier" else 1)
         widths = [inputs + made["embedding"], *made["hidden"], (1, self.k, 2)[number - 1]]
-        table = [(self.k, made["embedding"])] if made["conditioning"] == "embedding" else []
+        outputs = widths[-1]
+        table = {
+            "embedding": [made["embedding"]],
+            "frames": [made["embedding"], outputs * coordinates, outputs],
+        }.get(made["conditioning"], [])
         layers = zip(widths[1:], widths[:-1], strict=True)
-        return table + [shape for rows, columns in layers for shape in ((rows, columns), (1, rows))]
+        return [(self.k, columns) for columns in table] + [
+            shape for rows, columns in layers for shape in ((rows, columns), (1, rows))
+        ]
 
     def ask(self, number: int, point: list[float], chart: int = 0) -> list[float]:
         """Outputs of a network."""

@@ -27,6 +27,10 @@ SPECS = {
     "embedding fourier": NetworkSpec(
         (8,), 2, encoding="fourier", levels=2, conditioning="embedding", charts=5, embedding=3
     ),
+    "frames": NetworkSpec((8, 8), 2, conditioning="frames", charts=5, embedding=3, w0=2.0),
+    "frames sided": NetworkSpec(
+        (8,), 2, conditioning="frames", charts=5, embedding=3, mirror=0b010110, output="sigmoid"
+    ),
     "mirror": NetworkSpec((8, 8), 1, w0=2.0, mirror=0b101),
     "mirror scalar fourier": NetworkSpec(
         (8,), 2, encoding="fourier", levels=2, conditioning="scalar", charts=7, mirror=0b110
@@ -53,7 +57,7 @@ def by_hand(network: Network, point: np.ndarray, chart: int) -> list[float]:
         for p in coordinates:
             for i in range(spec.levels):
                 values += [math.sin(2**i * math.pi * p), math.cos(2**i * math.pi * p)]
-    if spec.conditioning == "embedding":
+    if spec.embedding:
         values = [*values, *network.tensors["embedding"][chart].tolist()]
     for weight, bias in network.layers[:-1]:
         before = weight.astype(float) @ np.array(values) + bias
@@ -61,6 +65,9 @@ def by_hand(network: Network, point: np.ndarray, chart: int) -> list[float]:
         values = [math.sin(spec.w0 * z) if sine else max(0.0, z) for z in before]
     weight, bias = network.layers[-1]
     last = weight.astype(float) @ np.array(values) + bias
+    if spec.conditioning == "frames":
+        slopes = network.tensors["slopes"][chart].reshape(len(last), -1).astype(float)
+        last = last + slopes @ np.array(coordinates) + network.tensors["offsets"][chart]
     outputs = {
         "identity": lambda z: z,
         "tanh": math.tanh,

@@ -17,6 +17,7 @@ SPECS = {
     "fourier sigmoid": NetworkSpec((6,), 2, "fourier", 4, w0=1.0, output="sigmoid"),
     "scalar": NetworkSpec((6,), 2, "fourier", 3, "scalar", charts=5, w0=1.0),
     "embedding": NetworkSpec((6, 6), 2, conditioning="embedding", charts=5, embedding=3),
+    "frames": NetworkSpec((6, 6), 2, conditioning="frames", charts=5, embedding=3, mirror=0b011011),
     "paper uv": paper_uv(3),
     "mirror": NetworkSpec((9, 7), 1, mirror=0b101),
     "sided": NetworkSpec((9, 7), 1, mirror=0b101101),
@@ -44,6 +45,16 @@ def test_the_published_weight_counts() -> None:
     assert paper_uv(190).weight_count == 31_874
     assert paper_chart(190).weight_count == 43_454
     assert paper_sdf().weight_count == 31_169
+
+
+def test_frames_are_where_they_were_placed() -> None:
+    spec = SPECS["frames"]
+    module = Module(spec, torch.Generator().manual_seed(1), "cpu")
+    slopes = np.arange(5 * 2 * 5, dtype=np.float32).reshape(5, 10)
+    offsets = np.arange(10, dtype=np.float32).reshape(5, 2)
+    module.place_frames(slopes, offsets)
+    assert (module.network().tensors["slopes"] == slopes).all()
+    assert (module.network().tensors["offsets"] == offsets).all()
 
 
 def test_the_module_holds_exactly_the_weights_of_its_spec() -> None:

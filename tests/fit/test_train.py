@@ -22,7 +22,7 @@ from nispcodec.fit.parallel import fit_networks, resolve_device
 from nispcodec.fit.soap import Soap
 from nispcodec.fit.task import Batch, Schedule, Task
 from nispcodec.fit.train import train
-from nispcodec.mesh.samples import SampleSet
+from nispcodec.mesh.sample_set import SampleSet
 from nispcodec.network import Network, NetworkSpec
 from nispcodec.progress import Progress, silent
 

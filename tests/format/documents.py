@@ -18,7 +18,7 @@ from nispcodec.asset import (
     TextureMap,
 )
 from nispcodec.document import ChartTable, Document, Frame
-from nispcodec.network import ACTIVATIONS, OUTPUTS, Network, NetworkSpec
+from nispcodec.network import ACTIVATIONS, CONDITIONINGS, OUTPUTS, Network, NetworkSpec
 
 
 def network(spec: NetworkSpec, seed: int = 0, scale: float = 1.0) -> Network:
@@ -123,7 +123,7 @@ def materials(textures: int) -> st.SearchStrategy[Material]:
 @st.composite
 def networks(draw: st.DrawFn, outputs: int, charts: int = 0) -> Network:
     """A network of any kind; `charts` 0: not conditioned. Pruned, quantised or neither."""
-    conditioning = draw(st.sampled_from(["none", "scalar", "embedding"])) if charts else "none"
+    conditioning = draw(st.sampled_from(CONDITIONINGS)) if charts else "none"
     fourier = draw(st.booleans())
     spec = NetworkSpec(
         hidden=tuple(draw(st.lists(st.integers(1, 6), min_size=1, max_size=3))),
@@ -132,7 +132,7 @@ def networks(draw: st.DrawFn, outputs: int, charts: int = 0) -> Network:
         levels=draw(st.integers(1, 3)) if fourier else 0,
         conditioning=conditioning,
         charts=charts if conditioning != "none" else 0,
-        embedding=draw(st.integers(1, 3)) if conditioning == "embedding" else 0,
+        embedding=draw(st.integers(1, 3)) if conditioning in ("embedding", "frames") else 0,
         activation=draw(st.sampled_from(ACTIVATIONS)),
         w0=draw(st.floats(0.5, 60)),
         output=draw(st.sampled_from(OUTPUTS)),

@@ -165,9 +165,10 @@ def matrices(made: network.Network) -> list[tuple[int, int]]:
         {"conditioning": "scalar", "charts": 5, "output": "sigmoid", "w0": 4.0},
         {"conditioning": "scalar", "charts": 5, "encoding": "fourier", "levels": 2},
         {"conditioning": "embedding", "charts": 5, "embedding": 3},
+        {"conditioning": "frames", "charts": 5, "embedding": 3, "mirror": 18, "output": "sigmoid"},
         {"conditioning": "scalar", "charts": 5, "encoding": "fourier", "levels": 2, "mirror": 13},
     ],
-    ids=["plain", "fourier", "scalar", "both", "embedding", "mirror"],
+    ids=["plain", "fourier", "scalar", "both", "embedding", "frames", "mirror"],
 )
 def test_its_evaluator(options: dict[str, object]) -> None:
     made = random_network(network.NetworkSpec((8, 7), 2, **options), scale=0.1)  # type: ignore[arg-type]

@@ -8,7 +8,7 @@ import pytest
 
 from nispcodec.mesh.charts import split_charts
 from nispcodec.mesh.load import load_mesh
-from nispcodec.mesh.mirror import Mirrors, mirrors
+from nispcodec.mesh.mirror import Mirrors
 from nispcodec.mesh.samples import Sampler
 
 ASSETS = Path(__file__).resolve().parents[3] / "shared" / "assets"
@@ -61,4 +61,4 @@ def test_symmetry_of_real_assets(name: str, expected: Mirrors) -> None:
     path = ASSETS / name / f"{name}.obj"
     if not path.exists():
         pytest.skip(f"no asset {path}")
-    assert mirrors(Sampler(load_mesh(path), seed=0)) == expected
+    assert Sampler(load_mesh(path), seed=0).mirrors == expected

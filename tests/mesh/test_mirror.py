@@ -5,13 +5,12 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from nispcodec.mesh.mirror import mirrors, unlike
 from nispcodec.mesh.samples import Sampler
 from tests.mesh.shapes import CUBE_CORNERS, CUBE_FACES, cube, hemisphere, soup
 
 
 def of(triangles: np.ndarray) -> int:
-    return mirrors(Sampler(soup(triangles), seed=0)).sdf
+    return Sampler(soup(triangles), seed=0).mirrors.sdf
 
 
 def test_a_box_is_symmetric_in_three_axes_wherever_it_stands() -> None:
@@ -34,7 +33,7 @@ def test_a_bump_on_one_side_is_told_from_the_other(axis: int) -> None:
 @pytest.mark.parametrize("axis", range(3))
 def test_where_a_ghost_of_the_bump_would_be_there_are_samples(axis: int) -> None:
     sampler = Sampler(soup(with_bump(axis)), seed=0)
-    (found,) = unlike(sampler, 20_000, 0.01)
+    (found,) = sampler.unlike(20_000, 0.01)
     bump = np.zeros(3)
     bump[axis] = (0.5 - 0.14) / np.linalg.norm([0.5, 0.5, 0.5])
     beside_the_bump = np.linalg.norm(np.abs(found.points) - bump, axis=1) < 0.15
@@ -45,14 +44,8 @@ def test_where_a_ghost_of_the_bump_would_be_there_are_samples(axis: int) -> None
 
 
 def test_a_symmetric_asset_needs_no_such_samples() -> None:
-    assert unlike(Sampler(soup(cube((0, 0, 0), 1.0)), seed=0), 1000, 0.01) == []
+    assert Sampler(soup(cube((0, 0, 0), 1.0)), seed=0).unlike(1000, 0.01) == []
 
 
 def test_a_sheet_counts_like_a_body() -> None:
     assert of(hemisphere()) == 0b011
-
-
-def test_asking_leaves_the_samples_as_they_are() -> None:
-    asked, other = Sampler(soup(cube((0, 0, 0), 1.0)), 3), Sampler(soup(cube((0, 0, 0), 1.0)), 3)
-    assert mirrors(asked) == mirrors(asked)
-    assert np.array_equal(asked.near(50, 0.01).points, other.near(50, 0.01).points)

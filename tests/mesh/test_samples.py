@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from nispcodec.mesh.samples import BETA, CUBE, Sampler, barycentric, normalising_frame
+from nispcodec.mesh.points import barycentric
+from nispcodec.mesh.samples import BETA, CUBE, Sampler, normalising_frame
 from tests.mesh.shapes import box_asset, cube, hemisphere, soup
 
 
