@@ -22,7 +22,7 @@ from nispcodec.network import Network
 # Slopes are relative to the whole surface's. Noise between the samples was seen at 3 to 7. Flat
 # pieces are mostly scraps of real detail that the fit could not hold: only specks are dropped.
 STEEP, SMALL_SHARE = 1.7, 0.05
-FLAT, SPECK_AREA = 0.4, 2e-3
+FLAT, SPECK_AREA = 0.6, 3e-3
 HOLLOW_SHARE = 0.03
 SOME = 20_000
 
