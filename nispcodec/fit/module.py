@@ -10,6 +10,7 @@ import torch
 from torch import Tensor
 from torch.nn import functional
 
+from nispcodec.fit.frames import affine_maps
 from nispcodec.fit.prune import Mask
 from nispcodec.fit.quantise import FIRST_BITS, Quantiser, snapped
 from nispcodec.network import TABLES, Network, NetworkSpec, Weights
@@ -65,11 +66,16 @@ class Module:
         tables = [places[name] for name in TABLES if name in places]
         return matrices + ([(torch.cat(tables, dim=1), 1.0)] if tables else [])
 
-    def place_frames(self, slopes: Weights, offsets: Weights) -> None:
-        """Start from these affine maps: (charts, outputs x coordinates), (charts, outputs)."""
+    def place_frames(self, points: Tensor, charts: Tensor, uvs: Tensor) -> None:
+        """Start from the affine maps nearest to the UVs (n, 2) of points (n, 3) of charts (n,)."""
+        seen = [part.cpu().numpy() for part in (self._coordinates(points), charts, uvs)]
+        coordinates, numbers, targets = seen
+        maps = affine_maps(
+            coordinates.astype(np.float64), numbers, targets.astype(np.float64), self.spec.charts
+        )
         parts = self._parts(self.weights.detach())
-        parts["slopes"].copy_(torch.from_numpy(slopes))
-        parts["offsets"].copy_(torch.from_numpy(offsets))
+        for name, values in zip(("slopes", "offsets"), maps, strict=True):
+            parts[name].copy_(torch.from_numpy(values))
 
     def __call__(self, points: Tensor, charts: Tensor | None = None) -> Tensor:
         """(n, 3) points, (n,) chart numbers -> (n, outputs)."""

@@ -11,7 +11,6 @@ import torch
 from torch import Tensor
 
 from nispcodec.errors import FitError
-from nispcodec.fit.frames import affine_maps
 from nispcodec.fit.module import Module
 from nispcodec.fit.prune import Mask
 from nispcodec.fit.quantise import FIRST_BITS, Quantiser
@@ -70,10 +69,10 @@ class _Run:
         self.listen = listen
         self.generator = torch.Generator().manual_seed(seed)
         self.module = Module(task.spec, self.generator, device, task.schedule.band)
-        if task.spec.conditioning == "frames":
-            self.module.place_frames(*affine_maps(task.spec, task.samples))
         self.held_out = Batch.of(task.held_out, device)
         self.samples = Batch.of(task.samples, device)
+        if task.spec.conditioning == "frames":
+            self.module.place_frames(self.samples.points, self.samples.chart, self.samples.uv)
         self.reached = torch.zeros(len(self.samples))
         self.batches = self._batches()
         self.reviews = _reviews(task.schedule)

@@ -52,7 +52,7 @@ def merge_charts(charts: Charts, cover: Cover, twins: NDArray[np.integer], gap: 
     kinds = [(int(charts.materials[i]), bool(charts.has_uv[i])) for i in first]
     numbers = group[cover.charts]
     neighbours = _neighbours(count, cover.points, numbers, gap)
-    _, palette = colored(neighbours, kinds)
+    _, palette = colored(neighbours, kinds)  # as few labels as the first that is free would take
     fits = _Fits(count, cover, numbers)
     labels, palette = colored(neighbours, kinds, palette, fits.choose)
     return Charts(

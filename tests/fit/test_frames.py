@@ -4,50 +4,46 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+import torch
 
 from nispcodec.decode.evaluate import evaluate
 from nispcodec.fit.frames import affine_maps
-from nispcodec.mesh.sample_set import SampleSet
+from nispcodec.fit.module import Module
 from nispcodec.network import Network, NetworkSpec
 
 SLOPES = np.array([[[1, 2, 3], [0, -1, 0.5]], [[0.2, 0, 0], [0, 0.3, -4]]])
 OFFSETS = np.array([[0.1, 0.2], [0.5, -0.5]])
+POINTS = np.random.default_rng(0).uniform(-1, 1, (200, 3)).astype(np.float32)
+ONE = np.arange(200) % 2
+CHARTS = 2 * ONE
 
 
-def samples(mirror: int) -> SampleSet:
-    """Points of charts 0 and 2 of 3, whose UVs are an affine map each of what the network sees."""
-    points = np.random.default_rng(0).uniform(-1, 1, (200, 3))
-    seen = np.where([mirror >> axis & 1 for axis in range(3)], np.abs(points), points)
-    one = np.arange(200) % 2
-    uv = np.einsum("noc,nc->no", SLOPES[one], seen) + OFFSETS[one]
-    return SampleSet(
-        points.astype(np.float32),
-        np.zeros(200, np.float32),
-        (2 * one).astype(np.int32),
-        uv.astype(np.float32),
-    )
+def uvs_of(seen: np.ndarray) -> np.ndarray:
+    """UVs of charts 0 and 2 of 3: an affine map each of what the network sees."""
+    return np.einsum("noc,nc->no", SLOPES[ONE], seen) + OFFSETS[ONE]
 
 
 @pytest.mark.parametrize("mirror", [0, 0b001, 0b001001], ids=["plain", "mirrored", "sided"])
 def test_a_network_of_zeros_answers_with_its_frames(mirror: int) -> None:
     spec = NetworkSpec((4,), 2, conditioning="frames", charts=3, embedding=1, mirror=mirror)
-    given = samples(mirror)
+    seen = np.where([mirror >> axis & 1 for axis in range(3)], np.abs(POINTS), POINTS)
+    uvs = uvs_of(seen).astype(np.float32)
+    module = Module(spec, torch.Generator().manual_seed(1), "cpu")
+    module.place_frames(*map(torch.from_numpy, (POINTS, CHARTS, uvs)))
     tensors = {name: np.zeros(shape, np.float32) for name, shape in spec.shapes.items()}
-    tensors["slopes"], tensors["offsets"] = affine_maps(spec, given)
-    found = evaluate(Network(spec, tensors), given.points, given.chart)
-    assert found == pytest.approx(given.uv, abs=2e-3)
+    placed = module.network().tensors
+    network = Network(spec, tensors | {name: placed[name] for name in ("slopes", "offsets")})
+    assert evaluate(network, POINTS, CHARTS) == pytest.approx(uvs, abs=2e-3)
 
 
 def test_the_direction_across_a_flat_chart_stays_out_of_it() -> None:
-    spec = NetworkSpec((4,), 2, conditioning="frames", charts=3, embedding=1)
-    given = samples(0)
-    given.points[:, 2] = np.random.default_rng(1).normal(scale=1e-4, size=200)
-    slopes, _ = affine_maps(spec, given)
+    flat = POINTS.astype(np.float64)
+    flat[:, 2] = np.random.default_rng(1).normal(scale=1e-4, size=200)
+    slopes, _ = affine_maps(flat, CHARTS, uvs_of(POINTS), 3)
     assert np.abs(slopes.reshape(3, 2, 3)[:, :, 2]).max() < 1
 
 
-def test_a_chart_without_samples_has_no_frame() -> None:
-    spec = NetworkSpec((4,), 2, conditioning="frames", charts=3, embedding=1)
-    slopes, offsets = affine_maps(spec, samples(0))
+def test_a_chart_without_points_has_no_frame() -> None:
+    slopes, offsets = affine_maps(POINTS.astype(np.float64), CHARTS, uvs_of(POINTS), 3)
     assert not slopes[1].any()
     assert not offsets[1].any()

@@ -47,16 +47,6 @@ def test_the_published_weight_counts() -> None:
     assert paper_sdf().weight_count == 31_169
 
 
-def test_frames_are_where_they_were_placed() -> None:
-    spec = SPECS["frames"]
-    module = Module(spec, torch.Generator().manual_seed(1), "cpu")
-    slopes = np.arange(5 * 2 * 5, dtype=np.float32).reshape(5, 10)
-    offsets = np.arange(10, dtype=np.float32).reshape(5, 2)
-    module.place_frames(slopes, offsets)
-    assert (module.network().tensors["slopes"] == slopes).all()
-    assert (module.network().tensors["offsets"] == offsets).all()
-
-
 def test_the_module_holds_exactly_the_weights_of_its_spec() -> None:
     spec = SPECS["embedding"]
     module = Module(spec, torch.Generator().manual_seed(1), "cpu")
