@@ -26,7 +26,7 @@ CODECS = {
     "nisp": ".nisp",
     "nisp_paper": ".nisp, the paper's networks",
 }
-# Twenty minutes an asset: only when asked for.
+# Twenty minutes an asset and an hour pruned: only when asked for.
 OPTIONAL = {"nisp_paper"}
 
 

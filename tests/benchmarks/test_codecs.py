@@ -7,11 +7,16 @@ import pytest
 
 pytest.importorskip("DracoPy", reason="peers: extra `bench`")
 
+import nispcodec
+from benchmarks.bjontegaard import LEAST_POINTS
 from benchmarks.codecs import CODECS, Setting, Unavailable, codec, gltfpack
 from benchmarks.corners import corners_of
 from benchmarks.simplify import simplified
 from benchmarks.source import Source
+from nispcodec.asset import TexturedMesh
+from nispcodec.decode.model import NispModel
 from nispcodec.decode.writers import write_mesh
+from nispcodec.encoder import PRESETS, EncodeConfig
 from nispcodec.format import pack
 from nispcodec.mesh.procedural import sample_asset
 from tests.tiny import document
@@ -107,7 +112,30 @@ def test_a_decoded_model_shows_the_source_s_materials(source: Source) -> None:
 
 
 def test_the_paper_s_preset_runs_only_when_asked_for(source: Source) -> None:
-    presets = [setting["preset"] for setting in codec("nisp").settings(source, quick=False)]
-    assert "balanced" in presets
-    assert "paper" not in presets
-    assert codec("nisp_paper").settings(source, quick=False) == [{"preset": "paper"}]
+    ours, theirs = (
+        {setting["preset"] for setting in codec(name).settings(source, quick=False)}
+        for name in ("nisp", "nisp_paper")
+    )
+    assert ours == {*PRESETS} - {"paper"}
+    assert theirs == {"paper"}
+
+
+def test_our_curve_has_the_points_that_a_delta_rate_wants(source: Source) -> None:
+    assert len(codec("nisp").settings(source, quick=False)) >= LEAST_POINTS
+
+
+@pytest.mark.parametrize("name", ["nisp", "nisp_paper"])
+def test_the_encoder_knows_our_settings(
+    name: str, source: Source, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    asked: list[EncodeConfig] = []
+
+    def encode(mesh: TexturedMesh, config: EncodeConfig) -> NispModel:
+        asked.append(config)
+        return NispModel(document())
+
+    monkeypatch.setattr(nispcodec, "encode", encode)
+    for setting in codec(name).settings(source, quick=False):
+        codec(name).encode(source, setting)
+    assert not any(config.textures for config in asked)
+    assert len({repr(config) for config in asked}) == len(asked)
