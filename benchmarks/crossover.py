@@ -1,6 +1,6 @@
 """At how many triangles does `.nisp` win? One asset, its surface kept smooth, ever more triangles.
 
-    python -m benchmarks.crossover ../shared/assets/spot/spot.obj -o OUT.json
+    python -m benchmarks.crossover ../shared/assets/spot/spot.obj
 
 Loop subdivision (Loop 1987) for positions, midpoints for UVs. The file of `.nisp` depends on the
 shape, not on the triangles, so it is fitted once, to the second level, and compared with every
@@ -36,6 +36,8 @@ MOST_FACES = 2_000_000
 BITS = {"qp": 11, "qt": 10}
 # Counts that a mesh of any size may be simplified to.
 TARGETS = [round(6000 * kept) for kept in KEPT] + [9000, 13_000, 20_000]
+
+RESULTS = Path("benchmarks/results/crossover.json")
 
 Record = dict[str, Any]
 
@@ -93,7 +95,7 @@ def errors(reference: Reference, decoded: TexturedMesh) -> dict[str, float]:
 @click.command()
 @click.argument("asset", type=click.Path(path_type=Path, exists=True))
 @click.option("--model", type=click.Path(path_type=Path, exists=True), help="Do not fit: use this.")
-@click.option("-o", "--output", type=click.Path(path_type=Path), required=True)
+@click.option("-o", "--output", type=click.Path(path_type=Path), default=RESULTS, show_default=True)
 def main(asset: Path, model: Path | None, output: Path) -> None:
     """Measure ASSET at its own number of triangles, and at 4, 16, 64 ... times as many."""
     source = Source(asset)

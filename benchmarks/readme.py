@@ -2,21 +2,23 @@
 
     python -m benchmarks.readme --bench build/bench
 
-The tables are of what `benchmarks.main_job` and `benchmarks.duel` found. --bench keeps what
-`python -m benchmarks` left in that folder as benchmarks/results/bench.{json,csv} and
-docs/rate_distortion.png: of these come the sizes of the other codecs.
+The tables are of what `benchmarks.main_job`, `benchmarks.duel` and `benchmarks.crossover` found.
+--bench keeps what `python -m benchmarks` left in that folder as
+benchmarks/results/bench.{json,csv} and docs/rate_distortion.png: of these come the delta rates and
+the sizes of the other codecs.
 """
 
 from __future__ import annotations
 
 import csv
 import json
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Any
 
 import click
 
+from benchmarks.crossover import RESULTS as CROSSOVER
 from benchmarks.duel import PRECISE
 from benchmarks.duel import RESULTS as DUEL
 from benchmarks.main_job import RESULTS
@@ -25,15 +27,18 @@ from nispcodec.output import write_atomic
 README = Path("README.md")
 BEGIN, END = "<!-- table: python -m benchmarks.readme -->\n", "<!-- end of table -->\n"
 HEAD = (
-    "| asset | faces | OBJ | `.nisp`, no textures | encode "
-    "| distance | UV median | charts | colour |\n"
-    "|---|---|---|---|---|---|---|---|---|\n"
-)
+    "asset", "faces", "OBJ", "`.nisp`, no textures", "encode", "distance", "UV median", "charts",
+    "colour",
+)  # fmt: skip
 PEERS_BEGIN = "<!-- peers: python -m benchmarks.readme -->\n"
 PEERS_END = "<!-- end of peers -->\n"
 PEERS_HEAD = (
     "kB, no textures", "`.nisp`", "simplify + Draco, as near", "and UVs as near", "ours / theirs",
 )  # fmt: skip
+CURVES = {"distance": "delta rate, distance", "uv": "delta rate, UV"}
+CROSSING_BEGIN = "<!-- crossover: python -m benchmarks.readme -->\n"
+CROSSING_END = "<!-- end of crossover -->\n"
+CROSSING_HEAD = ("triangles", "`.nisp`", "distance", "simplify + Draco, as near", "Draco")
 OTHERS = {
     "Draco 11/10 bits": ("draco", "11 10"),
     "gltfpack -cc 12/12 bits": ("gltfpack", "cc 12 12"),
@@ -43,10 +48,10 @@ BENCH, TABLE = Path("benchmarks/results/bench.json"), Path("benchmarks/results/b
 PLOT = Path("docs/rate_distortion.png")
 
 
-def row(name: str, record: dict[str, Any]) -> str:
-    """One asset's line."""
+def row(name: str, record: dict[str, Any]) -> list[str]:
+    """One asset's cells."""
     metrics = record["metrics"]
-    texts = [
+    return [
         name,
         f"{record['faces']:,}",
         f"{record['report']['input_bytes']['mesh'] / 1e3:,.0f} kB",
@@ -57,7 +62,6 @@ def row(name: str, record: dict[str, Any]) -> str:
         f"{metrics['charts']['accuracy']:.3f}",
         f"{metrics['color']['psnr']:.1f} dB",
     ]
-    return cells(texts)
 
 
 def measured() -> str:
@@ -66,24 +70,41 @@ def measured() -> str:
     rows = [row(name, record) for name, record in sorted(results["assets"].items())]
     machine = results["machine"]
     where = f"\nMeasured on {machine['cores']} cores, {machine['processor']}.\n"
-    return HEAD + "".join(rows) + where
+    return table(HEAD, rows) + where
 
 
 def compared() -> str:
-    """The table of `benchmarks.duel`, and the sizes of other codecs that have been measured."""
+    """The table of `benchmarks.duel`, delta rates and other codecs' sizes from `benchmarks`."""
     found = json.loads(DUEL.read_text(encoding="utf-8"))
-    rows: list[dict[str, str]] = []
-    if TABLE.exists():
-        with TABLE.open(encoding="utf-8", newline="") as file:
-            rows = list(csv.DictReader(file))
-    duels = sorted(found["assets"].items())
-    others = [title for title in OTHERS if any(size_of(rows, name, title) for name, _ in duels)]
-    lines = [cells(PEERS_HEAD + tuple(others)), cells(["---"] * (len(PEERS_HEAD) + len(others)))]
-    lines += [
-        cells([*duel_cells(name, duel), *(kilobytes(size_of(rows, name, each)) for each in others)])
-        for name, duel in duels
+    rates = json.loads(BENCH.read_text(encoding="utf-8"))["summary"]["delta_rate"]
+    with TABLE.open(encoding="utf-8", newline="") as file:
+        rows = list(csv.DictReader(file))
+    lines = [
+        [
+            *duel_cells(name, duel),
+            *(percentage(rates[name][error]) for error in CURVES),
+            *(kilobytes(size_of(rows, name, title)) for title in OTHERS),
+        ]
+        for name, duel in sorted(found["assets"].items())
     ]
-    return "".join(lines) + means_line(found["means"]["distance and uv"])
+    head = [*PEERS_HEAD, *CURVES.values(), *OTHERS]
+    return table(head, lines) + means_line(found["means"]["distance and uv"])
+
+
+def crossing() -> str:
+    """The table of `benchmarks.crossover`."""
+    levels = json.loads(CROSSOVER.read_text(encoding="utf-8"))["levels"]
+    lines = [
+        [
+            f"{level['faces']:,}",
+            f"{kilobytes(level['nisp']['bytes'])} kB",
+            f"{level['nisp']['distance']:.1e}",
+            f"{kilobytes(level['simplified_draco']['same_distance_bytes'])} kB",
+            f"{kilobytes(level['draco']['bytes'])} kB",
+        ]
+        for level in levels
+    ]
+    return table(CROSSING_HEAD, lines)
 
 
 def means_line(means: dict[str, float]) -> str:
@@ -101,9 +122,14 @@ def duel_cells(name: str, duel: dict[str, Any]) -> list[str]:
     return [name, *map(kilobytes, sizes), "–" if share is None else f"{share:.2f}"]
 
 
-def cells(texts: Iterable[str]) -> str:
-    """A line of a table."""
-    return "| " + " | ".join(texts) + " |\n"
+def table(head: Sequence[str], lines: Iterable[Sequence[str]]) -> str:
+    """A table of texts."""
+    return "".join(f"| {' | '.join(cells)} |\n" for cells in [head, ["---"] * len(head), *lines])
+
+
+def percentage(share: float | None) -> str:
+    """A share more or less, a dash for none."""
+    return "–" if share is None else f"{share:+.0%}"
 
 
 def kilobytes(size: int | None) -> str:
@@ -143,6 +169,7 @@ def main(bench: Path | None) -> None:
     text = README.read_text(encoding="utf-8")
     text = replaced(text, BEGIN, END, measured())
     text = replaced(text, PEERS_BEGIN, PEERS_END, compared())
+    text = replaced(text, CROSSING_BEGIN, CROSSING_END, crossing())
     write_atomic(README, text.encode())
 
 

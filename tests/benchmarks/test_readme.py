@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from benchmarks.readme import duel_cells, replaced, size_of
+from benchmarks.readme import duel_cells, percentage, replaced, size_of, table
 
 
 def test_only_what_stands_between_the_markers_changes() -> None:
@@ -30,3 +30,11 @@ def test_other_codecs_are_shown_where_they_are_measured() -> None:
     rows = [{"asset": "a", "codec": "draco", "setting": "11 10", "bytes": "12345"}]
     assert size_of(rows, "a", "Draco 11/10 bits") == 12345
     assert size_of(rows, "b", "Draco 11/10 bits") is None
+
+
+def test_a_delta_rate_is_a_share_more_or_less_or_a_dash() -> None:
+    assert [percentage(share) for share in (-0.284, 0.12, None)] == ["-28%", "+12%", "–"]
+
+
+def test_a_table_has_a_rule_below_its_head() -> None:
+    assert table(["a", "b"], [["1", "2"]]) == "| a | b |\n| --- | --- |\n| 1 | 2 |\n"
