@@ -87,15 +87,27 @@ def _started(
 def _work(task: Task, seed: int, device: str, core: Core, messages: Queue[Message]) -> None:
     """What a process does: tell progress, then the network or what went wrong.
 
-    Ctrl-C reaches every process; only the one that started the others answers it.
+    Ctrl-C reaches every process; only the one that started the others answers it. Should that one
+    be killed, nobody is left to want an answer.
     """
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     torch.set_num_threads(1)
+
+    def tell(update: Progress) -> None:
+        if _orphaned():
+            messages.cancel_join_thread()
+            sys.exit(1)
+        messages.put((task.name, update))
+
     try:
-        told = fit(task, seed, device, core, lambda update: messages.put((task.name, update)))
-        messages.put((task.name, told))
+        messages.put((task.name, fit(task, seed, device, core, tell)))
     except Exception as error:
         messages.put((task.name, error))
+
+
+def _orphaned() -> bool:
+    parent = multiprocessing.parent_process()
+    return parent is not None and not parent.is_alive()
 
 
 def _collected(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import multiprocessing
 import os
+import select
 import threading
 from collections.abc import Callable
 from dataclasses import replace
@@ -152,6 +153,24 @@ def test_a_process_that_is_killed_is_an_error() -> None:
     killed = replace(chart_task(), error=lambda module, batch: os._exit(9))
     with pytest.raises(FitError, match="chart network: its process ended with code 9"):
         fit_networks([sdf_task(), killed], 0, "cpu", 2, silent)
+
+
+def test_no_process_outlives_the_one_that_started_it() -> None:
+    """All hold the writing end of a pipe: who reads sees the last of them end."""
+    reader, writer = os.pipe()
+    fitted = ([sdf_task(10**6), chart_task()], 0, "cpu", 2, lambda _: os.write(writer, b"."))
+    starter = multiprocessing.get_context("fork").Process(target=fit_networks, args=fitted)
+    starter.start()
+    os.close(writer)
+    assert os.read(reader, 1) == b"."
+    starter.kill()
+    starter.join()
+    while select.select([reader], [], [], 30.0)[0]:
+        if not os.read(reader, 4096):
+            break
+    else:
+        pytest.fail("a network is still being fitted after half a minute")
+    os.close(reader)
 
 
 @pytest.mark.parametrize("device", ["gpu", "mps", "cuda:99x", ""])
