@@ -16,6 +16,7 @@ from nispcodec.fit.prune import Pruning
 from nispcodec.fit.sizes import (
     MIN_WIDTH,
     Widths,
+    bits_of,
     bytes_of,
     even_width,
     scale_for_bytes,
@@ -105,8 +106,8 @@ def fit_to_size(
     )
     widths = widths_for(errors, problem.area, scale)
     specs = problem.specs(widths)
-    bits = 8 * (wanted - besides) / sum(spec.weight_count for spec in specs.values())
-    budgets = {name: bits * spec.weight_count for name, spec in specs.items()}
+    share = (wanted - besides) / bytes_of(specs)
+    budgets = {name: share * bits for name, bits in bits_of(specs).items()}
     return fitting.fit(fitting.tasks(widths, errors, budgets), fitting.listen)
 
 

@@ -15,6 +15,9 @@ from nispcodec.errors import MeshError
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
 
+FLAT = 1e-7
+"""A face whose height is less than this part of its longest edge is a line, to double precision."""
+
 
 def frame_of(mesh: TexturedMesh) -> Frame:
     """The normalised frame of a mesh: bounding-box centre at 0, farthest used vertex at radius 1.
@@ -124,7 +127,9 @@ class Surface:
     @cached_property
     def _solid(self) -> Indices:
         # Faces without area have no normal and no barycentric coordinates.
-        solid = np.flatnonzero(self.areas > 0)
+        edges = self.corners - np.roll(self.corners, 1, axis=1)
+        longest = np.square(edges).sum(axis=2).max(axis=1)
+        solid = np.flatnonzero(2 * self.areas > FLAT * longest)
         if len(solid) == 0:
             raise MeshError(f"{self.mesh.name}: expected a surface, found no face with an area")
         return solid

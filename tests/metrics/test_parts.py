@@ -46,6 +46,21 @@ def test_closest_point_and_its_weights_agree() -> None:
     assert (found.weights >= 0).all()
 
 
+def test_weights_are_numbers_beside_faces_that_are_lines_but_for_rounding() -> None:
+    """As coordinates of three digits leave them."""
+    rng = np.random.default_rng(0)
+    starts, ways = rng.integers(-500, 500, (300, 3)), rng.integers(-50, 50, (300, 3))
+    lines = np.stack([starts, starts + ways, starts + 3 * ways], axis=1).reshape(-1, 3) / 1000
+    corners = np.vstack([lines, np.eye(3)])
+    surface = surface_of(
+        textured(corners, np.arange(len(corners)).reshape(-1, 3), corners[:, :2], "lines")
+    )
+    found = surface.closest(surface.positions + rng.normal(scale=1e-3, size=corners.shape))
+    np.testing.assert_allclose(
+        surface.interpolate(found.faces, found.weights), found.positions, atol=1e-6
+    )
+
+
 def test_distortion_of_a_known_map() -> None:
     # Two units wide and half a unit high onto the unit square: sigmas 1/2 and 2.
     positions = np.array([[0, 0, 0], [2, 0, 0], [2, 0.5, 0], [0, 0.5, 0]], dtype=float)
