@@ -13,17 +13,19 @@ from numpy.typing import NDArray
 
 Pair = tuple[float, float]
 
-LEAST_POINTS = 5
+LEAST_POINTS, LEAST_WORTH = 5, 3
+"""Measured, and of these on the front: through two points anything goes."""
 
 
 def delta_rate(anchor: Sequence[Pair], tested: Sequence[Pair]) -> float | None:
     """Mean share of bytes that `tested` needs beyond `anchor`, -0.5 for half, at equal error.
 
-    Curves are (bytes, error) pairs in any order. None when a curve has fewer than LEAST_POINTS
-    points that are worth their bytes, or when they share no range of errors.
+    Curves are (bytes, error) pairs in any order; points that are not worth their bytes count for
+    nothing. None when a curve has fewer than LEAST_POINTS points, or LEAST_WORTH that are worth
+    their bytes, or when they share no range of errors.
     """
     curves = [front(anchor), front(tested)]
-    if min(map(len, curves)) < LEAST_POINTS:
+    if min(len(anchor), len(tested)) < LEAST_POINTS or min(map(len, curves)) < LEAST_WORTH:
         return None
     qualities = [-20 * np.log10(curve[:, 1]) for curve in curves]
     low, high = max(q[0] for q in qualities), min(q[-1] for q in qualities)

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import torch
 from torch import Tensor
 from torch.nn import functional
 
 from nispcodec.fit.module import Module
-from nispcodec.fit.task import Batch
+from nispcodec.fit.task import Batch, Curvature
 
 NEAR = 0.01
 """Distances (normalised frame) well below this count in full in the relative loss."""
@@ -18,6 +19,12 @@ SIGN_WEIGHT = 1.8
 """Below 2 the loss is least where the field is the distance; above, near points are pushed away."""
 SIGN_SOFTNESS = 2e-3
 """How sure of its sign a field should be: about this far from zero (normalised frame)."""
+
+BENT_SDF, BENT_UV = 5e-5, 1e-4
+"""The kink of an absolute error is taken as if it were as round as this."""
+
+SURE = 10.0
+"""A chart that leads by so many logits counts as fairly sure, when weights are rounded."""
 
 
 def distance_error(module: Module, batch: Batch) -> Tensor:
@@ -59,3 +66,37 @@ def uv_error(module: Module, batch: Batch) -> Tensor:
     """
     off = (module(batch.points, batch.chart) - batch.uv).norm(dim=1)
     return off.clamp(max=FAR_OFF).mean()
+
+
+def distance_factors(outputs: Tensor, batch: Batch) -> Tensor:
+    """Of `relative_distance_loss`."""
+    field, sign = outputs[:, 0], batch.sdf.sign()
+    wrong = torch.sigmoid(-field * sign / SIGN_SOFTNESS)
+    bent = 1 / (field - batch.sdf).abs().clamp(min=BENT_SDF)
+    bent += SIGN_WEIGHT / SIGN_SOFTNESS * wrong * (1 - wrong) * sign.abs()
+    return (bent / (batch.sdf.abs() + NEAR)).sqrt()[:, None, None]
+
+
+def uv_factors(outputs: Tensor, batch: Batch) -> Tensor:
+    """Of `uv_loss`."""
+    bent = 0.5 / (outputs - batch.uv).abs().clamp(min=BENT_UV)
+    return torch.diag_embed(bent.sqrt())
+
+
+def chart_factors(outputs: Tensor, batch: Batch) -> Tensor:
+    """Of `chart_loss`, seen from further off: how the first chart's lead over the second moves.
+
+    The loss itself is flat wherever the chart is sure, and rounding goes far enough to change that.
+    """
+    lead, charts = outputs.topk(2, dim=1)
+    doubt = torch.sigmoid((lead[:, 1] - lead[:, 0]) / SURE)
+    first, second = (functional.one_hot(chart, outputs.shape[1]) for chart in charts.T)
+    bent = doubt * (1 - doubt)
+    return ((first - second) * bent.sqrt()[:, None])[:, :, None]
+
+
+CURVATURES = {
+    "sdf": Curvature(distance_factors, 1e-5),
+    "chart": Curvature(chart_factors, 1e-3),
+    "uv": Curvature(uv_factors, 1e-5),
+}

@@ -12,7 +12,6 @@ from torch.nn import functional
 
 from nispcodec.fit.frames import affine_maps
 from nispcodec.fit.prune import Mask
-from nispcodec.fit.quantise import FIRST_BITS, Quantiser, snapped
 from nispcodec.network import TABLES, Network, NetworkSpec, Weights
 
 
@@ -20,13 +19,13 @@ class Module:
     """A network under training.
 
     All its numbers are one vector, in file order, so that rounding, clipping and charging are one
-    operation each. Sine layers hold w0 W and w0 b, which saves a pass over the activations. With a
-    quantiser it computes with rounded weights, as the file will hold them. Once pruned, `kept` is 1
-    or 0 for each number, and what is pruned is 0 after every `hold`. `band` scales the frequencies
-    that it starts with.
+    operation each. Sine layers hold w0 W and w0 b, which saves a pass over the activations. Once
+    rounded (`nispcodec.fit.rounding`), each tensor is a multiple of its step in `steps`. Once
+    pruned, `kept` is 1 or 0 for each number, and what is pruned is 0 after every `hold`. `band`
+    scales the frequencies that it starts with.
     """
 
-    quantiser: Quantiser | None = None
+    steps: Tensor | None = None
     kept: Tensor | None = None
 
     def __init__(
@@ -80,8 +79,11 @@ class Module:
     def __call__(self, points: Tensor, charts: Tensor | None = None) -> Tensor:
         """(n, 3) points, (n,) chart numbers -> (n, outputs)."""
         used = self.weights if self.kept is None else self.weights * self.kept
-        used = used if self.quantiser is None else self.quantiser.rounded(used)
-        parts = self._parts(used)
+        return self.outputs(used, points, charts)
+
+    def outputs(self, weights: Tensor, points: Tensor, charts: Tensor | None) -> Tensor:
+        """The same with other weights than its own."""
+        parts = self._parts(weights)
         points = self._coordinates(points)
         rows = self._rows(parts, charts)
         hidden = self._encoded(points, charts, rows)
@@ -108,39 +110,36 @@ class Module:
         if self.kept is not None:
             self.weights.mul_(self.kept)
 
-    def quantise(self, bits: float = FIRST_BITS) -> None:
-        """Compute with rounded weights from now on, at first of about so many bits each."""
-        self.quantiser = Quantiser(self.weights, self._groups(), self.kept, bits)
+    @property
+    def places(self) -> Tensor:
+        """Where in the vector the numbers are that are not pruned."""
+        everything = torch.arange(len(self.weights))
+        return everything if self.kept is None else everything[self.kept.cpu() > 0]
+
+    @property
+    def groups(self) -> Tensor:
+        """For each number of the vector that of its tensor."""
+        counts = torch.tensor(self._counts)
+        return torch.repeat_interleave(torch.arange(len(counts)), counts)
 
     def network(self) -> Network:
-        """The weights as they are now; with a quantiser each a symbol times its tensor's step."""
+        """The weights as they are now; once rounded, each a symbol times its tensor's step."""
         tensors: dict[str, Weights] = {}
         steps: dict[str, float] = {}
         for group, (name, values) in enumerate(self._parts(self.weights.detach()).items()):
             scale = self.scales[name]
-            if self.quantiser is None:
+            if self.steps is None:
                 tensors[name] = _array(values / scale)
                 continue
-            step = self.quantiser.steps[group]
-            steps[name] = snapped(step.item() / scale)
+            step = float(self.steps[group])
+            steps[name] = snapped(step / scale)
             tensors[name] = _array((values / step).round()) * np.float32(steps[name])
         return Network(self.spec, tensors, steps)
-
-    def settle(self) -> None:
-        """Hold the steps of the quantiser to those that a file can hold."""
-        if self.quantiser is not None:
-            self.quantiser.settle(list(self.scales.values()))
 
     def _parts(self, vector: Tensor) -> dict[str, Tensor]:
         """The tensors that a vector like `weights` holds, as views."""
         parts = zip(self._shapes.items(), torch.split(vector, self._counts), strict=True)
         return {name: part.view(shape) for (name, shape), part in parts}
-
-    def _groups(self) -> Tensor:
-        """For each number of the vector that of its tensor."""
-        counts = torch.tensor(self._counts)
-        groups = torch.repeat_interleave(torch.arange(len(counts)), counts)
-        return groups.to(self.weights.device)
 
     def _coordinates(self, points: Tensor) -> Tensor:
         if not self.spec.mirror:
@@ -202,6 +201,12 @@ def _weight_bound(spec: NetworkSpec, layer: int, fan_in: int) -> float:
         return spec.w0 / fan_in
     bound = math.sqrt(6 / fan_in)
     return bound if layer < len(spec.hidden) else bound / spec.w0
+
+
+def snapped(step: float) -> float:
+    """The nearest number of four significant bits."""
+    mantissa, exponent = math.frexp(step)
+    return round(mantissa * 16) / 16 * 2.0**exponent
 
 
 def _array(tensor: Tensor) -> Weights:

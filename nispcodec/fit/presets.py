@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 from nispcodec.fit.losses import (
+    CURVATURES,
     chart_error,
     chart_loss,
     distance_error,
@@ -14,7 +15,7 @@ from nispcodec.fit.losses import (
     uv_loss,
 )
 from nispcodec.fit.sizes import FINE, LAYERS, Widths
-from nispcodec.fit.task import Schedule, Task
+from nispcodec.fit.task import Rounding, Schedule, Task
 from nispcodec.mesh.mirror import Mirrors
 from nispcodec.mesh.sample_set import SampleSet
 from nispcodec.mesh.samples import Sampler
@@ -27,8 +28,8 @@ PAPER_LEVELS = 5
 PAPER_STEPS = 40_000
 """What twenty minutes on two cores allow of the published 2000 epochs of 10^6 samples."""
 
-PRICES = {"sdf": 0.005, "chart": 0.01, "uv": 0.01}
-"""By what share of the loss a bit a weight less may raise it."""
+PRICES = {"sdf": 5e-3, "chart": 0.02, "uv": 4e-5}
+"""How much a bit a weight less may raise the loss."""
 
 BATCHES = {"sdf": 2048, "chart": 1024, "uv": 2048}
 WIDE, WIDE_BATCH = 36, 1024
@@ -135,7 +136,7 @@ def sine_tasks(
     errors: Mapping[str, float],
     budgets: Mapping[str, float],
 ) -> list[Task]:
-    """Small sine networks with quantised weights, most of the capacity near the surface, SOAP.
+    """Small sine networks with rounded weights, most of the capacity near the surface, SOAP.
 
     errors   held-out errors of the probes, by name
     budgets  bits for each network; without one the price decides
@@ -151,11 +152,10 @@ def sine_tasks(
             _schedule(name, steps, effort.band),
             batch=batch,
             rate=FINE_RATE if fine and name == "sdf" else RATES[name],
-            price=PRICES[name],
-            budget=budgets.get(name, 0.0),
             reviews=effort.reviews if name == "sdf" else 0,
         )
-        tasks.append(_task(problem.sets, name, spec, schedule))
+        rounding = Rounding(CURVATURES[name], PRICES[name], budgets.get(name, 0.0))
+        tasks.append(replace(_task(problem.sets, name, spec, schedule), rounding=rounding))
     return tasks
 
 
@@ -177,8 +177,8 @@ def paper_tasks(charts: int, sets: TrainingSets) -> list[Task]:
     fast = Schedule(PAPER_STEPS, rate=5e-4, optimiser="adam")
     return [
         Task("sdf", paper_sdf(), *_distance(sets), distance_error, distance_error, slow),
-        Task("chart", paper_chart(charts), *_skin(sets), chart_loss, chart_error, fast),
-        Task("uv", paper_uv(charts), *_skin(sets), uv_loss, uv_error, fast),
+        Task("chart", paper_chart(charts), *_skin(sets), *_LOSSES["chart"], fast),
+        Task("uv", paper_uv(charts), *_skin(sets), *_LOSSES["uv"], fast),
     ]
 
 

@@ -52,16 +52,40 @@ Objective = Callable[[Module, Batch], Tensor]
 
 
 @dataclass(frozen=True)
+class Curvature:
+    """How fast a loss rises about where it is: what rounding the weights will cost.
+
+    factors(outputs (n, k), batch) -> (n, k, r): each point's second derivatives by its outputs are
+    the product of its factor and that one's transpose. `damping`, as a share of their mean, is
+    added to the second derivatives by each weight: the less they hold further off, the more.
+    """
+
+    factors: Callable[[Tensor, Batch], Tensor]
+    damping: float
+
+
+@dataclass(frozen=True)
+class Rounding:
+    """How finely weights are rounded, and by what `curvature` of the loss.
+
+    price   how much a bit a weight less may raise the loss, as its curvature has it
+    budget  bits that all weights together take; 0: as the price says
+    """
+
+    curvature: Curvature
+    price: float
+    budget: float = 0.0
+
+
+@dataclass(frozen=True)
 class Schedule:
     """How long and how fast: `steps` of `batch` points; `rate` is warmed up, then held or lowered.
 
     `optimiser` is "soap" (rate warmed up, then a cosine down to a hundredth) or "adam" (rate held,
     as the paper does).
 
-    price   by what share of the loss one bit a weight less may raise it; 0: float32 weights
     band    frequencies that the first layer starts with, relative to SIREN's
     last    rate of the last layer, relative to the others'
-    budget  bits that all weights together take; 0: as the price says
     reviews how often samples of a signed distance are sought that are on the wrong side
     """
 
@@ -69,16 +93,17 @@ class Schedule:
     batch: int = 2048
     rate: float = 1e-3
     optimiser: str = "soap"
-    price: float = 0.0
     band: float = 1.0
     last: float = 1.0
-    budget: float = 0.0
     reviews: int = 0
 
 
 @dataclass(frozen=True)
 class Task:
-    """Fit `spec` to `samples` by minimising `loss`; `error` on `held_out` says how good it is."""
+    """Fit `spec` to `samples` by minimising `loss`; `error` on `held_out` says how good it is.
+
+    Without `rounding` the weights stay float32.
+    """
 
     name: str
     spec: NetworkSpec
@@ -87,4 +112,5 @@ class Task:
     loss: Objective
     error: Objective
     schedule: Schedule
+    rounding: Rounding | None = None
     pruning: Pruning | None = None

@@ -38,8 +38,7 @@ def fit(
                     f"{task.name} network: nothing is left of {name}: expected a lower prune rate "
                     f"than {rates[-1]:g}, or another strategy than smallest_global"
                 )
-        price = task.schedule.price if rate == rates[-1] else 0.0
-        this = replace(task, schedule=replace(task.schedule, price=price))
+        this = task if rate == rates[-1] else replace(task, rounding=None)
         return train(this, seed, device, core, next(heard), mask)
 
     *_, network = tickets(task, task.pruning.strategy, rates, trained)

@@ -6,6 +6,7 @@ import math
 import time
 from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager
+from dataclasses import replace
 
 import torch
 from torch import Tensor
@@ -13,9 +14,9 @@ from torch import Tensor
 from nispcodec.errors import FitError
 from nispcodec.fit.module import Module
 from nispcodec.fit.prune import Mask
-from nispcodec.fit.quantise import FIRST_BITS, Quantiser
+from nispcodec.fit.rounding import round_weights
 from nispcodec.fit.soap import Soap
-from nispcodec.fit.task import Batch, Schedule, Task
+from nispcodec.fit.task import Batch, Rounding, Schedule, Task
 from nispcodec.mesh.misses import reaches
 from nispcodec.network import Network
 from nispcodec.progress import Listener, Progress
@@ -31,8 +32,6 @@ MEMORY = 0.7
 """Share of a sample's weight that is left at the next review."""
 
 CHUNK = 25
-QUANTISED = 0.5
-HARD = 0.9
 LOSS_MEMORY = 0.99
 DIVERGED = 4.0
 SETTLED = 0.25
@@ -52,9 +51,8 @@ def train(
     What a `mask` prunes is 0 from the first step to the last; initial weights depend on the seed.
     After a review, half of what is drawn is samples on the wrong side (`nispcodec.mesh.misses`).
 
-    A run whose held-out error explodes goes on from its best weights at half the rate. With a
-    price of bits the network computes with rounded weights from `QUANTISED` of the steps on, learns
-    its steps until `HARD`, and then settles on them.
+    A run whose held-out error explodes goes on from its best weights at half the rate. At
+    the end the weights are rounded (`nispcodec.fit.rounding`), if the task says how.
     Raises FitError when lower rates do not help.
     """
     run = _Run(task, seed, device, listen)
@@ -98,34 +96,34 @@ class _Run:
                 Progress(self.task.name, "fit", done, steps, self.loss, self.error, left, note)
             )
         self._restore()
+        if self.task.rounding is not None:
+            with core:
+                self._round(self.task.rounding)
         return self.module.network()
 
     error = math.nan
 
     def _step(self, step: int) -> None:
         schedule = self.task.schedule
-        if schedule.price and step in (_at(QUANTISED, schedule), _at(HARD, schedule)):
-            self._harden()
         if step in self.reviews:
             self._review(strays=step > self.reviews[0])
         loss = self.task.loss(self.module, next(self.batches))
         self.module.weights.grad = None
         loss.backward()  # type: ignore[no-untyped-call]
         self._remember(float(loss.detach()))
-        if self.module.quantiser is not None:
-            self._charge(self.module.quantiser, learn=step < _at(HARD, schedule))
         self._clip()
         self.move(self.rate * _shape(schedule, step))
         self.module.hold()
 
-    def _harden(self) -> None:
-        """Begin a stage whose weights are not comparable with those before."""
-        if self.module.quantiser is None:
-            budget = self.task.schedule.budget
-            self.module.quantise(budget / self.task.spec.weight_count or FIRST_BITS)
-        else:
-            self.module.settle()
-        self.best_error, self.best = math.inf, self._weights()
+    def _round(self, rounding: Rounding) -> None:
+        steps, before = self.task.schedule.steps, self.best_error
+        told = Progress(self.task.name, "quantise", steps, steps, self.loss, before, 0.0)
+        self.listen(told)
+        round_weights(self.module, self.samples, rounding, self.generator)
+        with torch.no_grad():
+            after = float(self.task.error(self.module, self.held_out))
+        note = f"held-out error {before:.3g} before, {after:.3g} after"
+        self.listen(replace(told, error=after, note=note))
 
     @torch.no_grad()
     def _review(self, strays: bool) -> None:
@@ -153,14 +151,6 @@ class _Run:
                 again = torch.multinomial(reach, count, True, generator=generator)
                 order = torch.stack([order, reaching[again]], dim=1).flatten()
             yield from self.samples.chosen(order.to(self.samples.points.device)).parts(size)
-
-    def _charge(self, quantiser: Quantiser, learn: bool) -> None:
-        schedule = self.task.schedule
-        price = schedule.price * self.loss / len(self.module.weights)
-        rate = quantiser.charge(self.module.weights, price)
-        if learn:
-            quantiser.learn(rate - schedule.budget if schedule.budget else 0.0)
-        quantiser.log_steps.grad = None
 
     def _clip(self) -> None:
         gradient = self.module.weights.grad
@@ -207,27 +197,17 @@ class _Run:
 
         return move
 
-    def _weights(self) -> list[Tensor]:
-        return [tensor.detach().clone() for tensor in self._learned()]
-
-    def _learned(self) -> list[Tensor]:
-        quantiser = self.module.quantiser
-        steps = [] if quantiser is None else [quantiser.log_steps]
-        return [self.module.weights, *steps]
+    def _weights(self) -> Tensor:
+        return self.module.weights.detach().clone()
 
     @torch.no_grad()
     def _restore(self) -> None:
-        for tensor, kept in zip(self._learned(), self.best, strict=True):
-            tensor.copy_(kept)
+        self.module.weights.copy_(self.best)
 
 
 def _reviews(schedule: Schedule) -> range:
     every = schedule.steps // (schedule.reviews + 1)
     return range(every, every * schedule.reviews + 1, every) if every else range(0)
-
-
-def _at(share: float, schedule: Schedule) -> int:
-    return int(share * schedule.steps)
 
 
 def _shape(schedule: Schedule, step: int) -> float:

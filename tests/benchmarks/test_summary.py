@@ -25,6 +25,12 @@ def test_delta_rate_of_known_curves() -> None:
 def test_delta_rate_wants_points_and_a_common_range() -> None:
     assert delta_rate(power_law(10), power_law(5)[:4]) is None
     assert delta_rate(power_law(10), power_law(5, np.geomspace(1, 1e-1, 6))) is None
+    assert delta_rate(power_law(10), [*power_law(5)[:2], *[(1e6, 1.0)] * 5]) is None
+
+
+def test_delta_rate_counts_only_points_that_are_worth_their_bytes() -> None:
+    wasted = [(1e6, 1.0), (2e6, 1.0)]
+    assert delta_rate(power_law(10), [*power_law(5)[:3], *wasted]) == pytest.approx(-0.5)
 
 
 def test_front_drops_what_is_not_worth_its_bytes() -> None:

@@ -11,6 +11,7 @@ import pytest
 import torch
 
 from nispcodec.errors import FitError, NispError
+from nispcodec.fit.losses import CURVATURES
 from nispcodec.fit.module import Module
 from nispcodec.fit.prune import (
     NETWORKS,
@@ -24,7 +25,7 @@ from nispcodec.fit.prune import (
     smallest,
     smallest_global,
 )
-from nispcodec.fit.task import Schedule
+from nispcodec.fit.task import Rounding, Schedule
 from nispcodec.fit.tickets import fit, tickets
 from nispcodec.fit.train import train
 from nispcodec.format import pack, unpack
@@ -141,9 +142,10 @@ def written(network: Network) -> Network:
 
 
 @pytest.mark.parametrize("optimiser", ["soap", "adam"])
-@pytest.mark.parametrize("price", [0.0, 0.01])
+@pytest.mark.parametrize("price", [0.0, 1e-4])
 def test_what_is_pruned_is_exactly_zero_in_the_file(optimiser: str, price: float) -> None:
-    task = replace(sdf_task(), schedule=Schedule(80, 128, optimiser=optimiser, price=price))
+    rounding = Rounding(CURVATURES["sdf"], price) if price else None
+    task = replace(sdf_task(), schedule=Schedule(80, 128, optimiser=optimiser), rounding=rounding)
     rng = np.random.default_rng(0)
     mask = {name: rng.random(kept.shape) < 0.4 for name, kept in everything(task.spec).items()}
     network = written(train(task, 0, "cpu", threading.Lock(), silent, mask))
@@ -154,20 +156,18 @@ def test_what_is_pruned_is_exactly_zero_in_the_file(optimiser: str, price: float
     assert (network.tensors["bias.0"] != 0).mean() > 0.5
 
 
-def test_a_pruned_weight_has_no_gradient_and_costs_no_bits() -> None:
+def test_a_pruned_weight_has_no_gradient_and_no_place() -> None:
     module = Module(SPEC, torch.Generator().manual_seed(0), "cpu")
     mask = {name: np.zeros_like(kept) for name, kept in everything(SPEC).items()}
     mask["weight.1"][0, 0] = True
     module.prune(mask)
-    module.quantise()
     module(torch.rand(9, 3), torch.arange(9) % 4).sum().backward()
     assert module.weights.grad is not None
     assert module.kept is not None
     assert (module.weights.grad[module.kept == 0] == 0).all()
-    assert module.quantiser is not None
-    assert torch.isfinite(module.quantiser.log_steps).all()
     biases_and_embedding = 12 + 7 + 2 + 4 * 3
     assert module.kept.sum() == 1 + biases_and_embedding
+    assert torch.equal(module.places, module.kept.nonzero()[:, 0])
 
 
 def test_every_round_starts_from_the_same_weights() -> None:
@@ -204,11 +204,13 @@ def test_a_network_that_would_be_a_constant_is_an_error() -> None:
 
 def test_rounds_are_told_and_only_the_last_is_quantised() -> None:
     seen: list[Progress] = []
-    schedule = Schedule(50, 128, price=0.01)
-    task = replace(sdf_task(), schedule=schedule, pruning=Pruning("smallest", 0.75, 2))
+    rounding = Rounding(CURVATURES["sdf"], 1e-4)
+    task = replace(sdf_task(), schedule=Schedule(50, 128), rounding=rounding)
+    task = replace(task, pruning=Pruning("smallest", 0.75, 2))
     network = fit(task, 0, "cpu", threading.Lock(), seen.append)
     stages = list(dict.fromkeys(update.stage for update in seen))
-    assert stages == [f"fit, round {number} of 3" for number in (1, 2, 3)]
+    fits = [f"fit, round {number} of 3" for number in (1, 2, 3)]
+    assert stages == [*fits, "quantise, round 3 of 3"]
     assert seen[-1].seconds_left == 0
     assert network.steps
     for name in everything(task.spec):

@@ -1,0 +1,182 @@
+"""Rounding whose errors cancel: what one weight is off by, those not rounded yet make up for.
+
+Weights on a grid are sought that raise the loss least, by its second derivatives (Gauss-Newton):
+the nearest plane of Babai, "On Lovasz' lattice reduction and the nearest lattice point problem",
+1986; found again as optimal brain compression and GPTQ (Frantar et al. 2022). Of a small network
+the second derivatives are known whole, or in large blocks.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+import torch
+from numpy.typing import NDArray
+from torch import Tensor
+from torch.func import grad, vmap
+from torch.nn import functional
+
+from nispcodec.fit.module import Module, snapped
+from nispcodec.fit.task import Batch, Curvature, Rounding
+
+SAMPLES = 8_000
+BLOCK = 2_500
+"""Weights of which all pairs are looked at together: beyond, memory and time run away."""
+
+ENTRIES = 4_000_000
+SWEEPS = 1
+SHARES = 0.0, 0.1, 0.3, 1.0
+GAUSSIAN_BITS = 0.5 * math.log2(2 * math.pi * math.e)
+FINEST, COARSEST = 1e-6, 1e3
+OCTAVES, CLOSE = 32.0, 1e-3
+TINY = 1e-30
+
+Doubles = NDArray[np.float64]
+
+
+def round_weights(
+    module: Module, samples: Batch, rounding: Rounding, generator: torch.Generator
+) -> None:
+    """Put the weights on a grid, with a step for each tensor; what is pruned costs nothing."""
+    batch = samples.chosen(torch.randperm(len(samples), generator=generator)[:SAMPLES])
+    bent = _Bent(module, batch, rounding.curvature)
+    # Within a block the last is rounded first: from the first layer on, which is the least linear.
+    order = module.places.flip(0)
+    blocks = torch.split(order, BLOCK)
+    roots = bent.roots(blocks, generator)
+    module.steps = _steps(module, order, roots, rounding)
+    for _ in range(SWEEPS):
+        for places, root in zip(reversed(blocks), reversed(roots), strict=True):
+            values = bent.better(places, root)
+            grid = module.steps[module.groups[places]]
+            symbols = nearest((values / grid).numpy(), (root * grid).numpy())
+            bent.move(places, torch.from_numpy(symbols) * grid)
+
+
+def nearest(values: Doubles, root: Doubles) -> Doubles:
+    """Integers x (n,) for which |root (x - values)| is small; `root` (n, n) upper triangular."""
+    lines = root / np.diag(root)[:, None]
+    missing, found = np.zeros_like(values), np.zeros_like(values)
+    for i in reversed(range(len(values))):
+        found[i] = np.round(values[i] + lines[i, i + 1 :] @ missing[i + 1 :])
+        missing[i] = values[i] - found[i]
+    return found
+
+
+class _Bent:
+    """The rise of the loss as a square of how far the outputs are from what they were at first."""
+
+    def __init__(self, module: Module, batch: Batch, curvature: Curvature) -> None:
+        self.module, self.batch, self.damping = module, batch, curvature.damping
+        with torch.no_grad():
+            self.first = module(batch.points, batch.chart)
+            self.factors = curvature.factors(self.first, batch)
+
+    def slope(self) -> Tensor:
+        """Its derivatives by the weights, where they are now."""
+        weights = self.module.weights
+        weights.grad = None
+        self._rise().backward()  # type: ignore[no-untyped-call]
+        assert weights.grad is not None
+        return weights.grad.cpu().double()
+
+    def better(self, places: Tensor, root: Tensor) -> Tensor:
+        """What these weights should be, as the others are: some way along Newton's step."""
+        values = self.module.weights.detach().cpu().double()[places]
+        slope = self.slope()[places]
+        step = torch.cholesky_solve(slope[:, None], root, upper=True)[:, 0]
+        rises = {}
+        for share in SHARES:
+            self.move(places, values - share * step)
+            rises[share] = self.rise()
+        return values - min(rises, key=rises.__getitem__) * step
+
+    @torch.no_grad()
+    def rise(self) -> float:
+        """How much it is."""
+        return float(self._rise())
+
+    def _rise(self) -> Tensor:
+        batch = self.batch
+        off = self.module(batch.points, batch.chart) - self.first
+        return (off[:, None] @ self.factors).square().sum() / (2 * len(batch))
+
+    @torch.no_grad()
+    def move(self, places: Tensor, values: Tensor) -> None:
+        """Put new values in these places."""
+        weights = self.module.weights
+        weights.index_copy_(0, places.to(weights.device), values.to(weights))
+
+    def roots(self, blocks: Sequence[Tensor], generator: torch.Generator) -> list[Tensor]:
+        """Upper Cholesky factors of its second derivatives, block by block."""
+        weights, batch = self.module.weights.detach(), self.batch
+        sums = [torch.zeros(len(block), len(block), device=weights.device) for block in blocks]
+        order = torch.cat(list(blocks)).to(weights.device)
+        size = max(1, min(len(batch), ENTRIES // len(weights)))
+        # One direction for each point in place of all, right in the mean.
+        signs = torch.randint(2, self.factors.shape[::2], generator=generator) * 2.0 - 1
+        directions = (self.factors @ signs.to(weights)[:, :, None])[:, :, 0]
+        for points in torch.split(torch.arange(len(batch), device=weights.device), size):
+            part, along = batch.chosen(points), directions[points]
+            slopes = _slopes(self.module, weights, part, along).index_select(1, order)
+            for rows, total in zip(torch.split(slopes, BLOCK, dim=1), sums, strict=True):
+                total.addmm_(rows.T, rows, alpha=1 / len(batch))
+        return [_root(total.cpu().double(), self.damping) for total in sums]
+
+
+def _slopes(module: Module, weights: Tensor, batch: Batch, directions: Tensor) -> Tensor:
+    """Of each point's outputs along its direction (n, outputs) the derivatives (n, weights)."""
+
+    def along(used: Tensor, point: Tensor, chart: Tensor, direction: Tensor) -> Tensor:
+        return module.outputs(used, point[None], chart[None])[0] @ direction
+
+    every = vmap(grad(along), in_dims=(None, 0, 0, 0))
+    slopes: Tensor = every(weights, batch.points, batch.chart, directions)
+    return slopes
+
+
+def _root(square: Tensor, damping: float) -> Tensor:
+    square.diagonal().add_(damping * float(square.diagonal().mean()) + TINY)
+    return torch.linalg.cholesky(square, upper=True)
+
+
+def _steps(module: Module, order: Tensor, roots: Sequence[Tensor], rounding: Rounding) -> Tensor:
+    """The steps, one for each tensor, with which rounding costs what it may, in fewest bits.
+
+    An error of variance s^2 / 12 in each weight costs half its stiffness times that; at the optimum
+    a bit less costs the same in every tensor.
+    """
+    groups, scales = module.groups[order], module.scales.values()
+    stiffness = torch.cat([root.diagonal().square() for root in roots])
+    counts = torch.bincount(groups, minlength=len(scales)).double()
+    total = torch.zeros_like(counts).index_add_(0, groups, stiffness)
+    rise = rounding.price / (2 * math.log(2))
+    steps = (24 * rise / len(order) * counts / (total + TINY)).sqrt()
+    if rounding.budget:
+        weights = module.weights.detach().cpu().double()[order]
+        steps *= 2 ** _octaves(weights, groups, steps, rounding.budget)
+    held = [
+        snapped(min(max(step, FINEST), COARSEST) / scale) * scale
+        for step, scale in zip(steps.tolist(), scales, strict=True)
+    ]
+    return torch.tensor(held, dtype=torch.float64)
+
+
+def _octaves(weights: Tensor, groups: Tensor, steps: Tensor, budget: float) -> float:
+    """How many octaves coarser (below 0: finer) steps make the weights fit into `budget` bits.
+
+    n weights of power p on a grid of step s take n softplus(2 x) / 2 bits, x = log2(sqrt(p) / s) +
+    `GAUSSIAN_BITS`: a Gaussian's entropy, kept above 0.
+    """
+    counts = torch.bincount(groups, minlength=len(steps)).double()
+    power = torch.zeros_like(counts).index_add_(0, groups, weights.square())
+    excess = torch.log2((power / counts.clamp(min=1)).clamp(min=TINY)) + 2 * GAUSSIAN_BITS
+    excess -= 2 * torch.log2(steps.clamp(min=FINEST))
+    low, high = -OCTAVES, OCTAVES
+    while high - low > CLOSE:
+        middle = (low + high) / 2
+        bits = float(counts @ functional.softplus(excess - 2 * middle)) / 2
+        low, high = (middle, high) if bits > budget else (low, middle)
+    return high

@@ -1,0 +1,166 @@
+"""Rounding: weights on the grid of their steps, errors that cancel, steps that follow the price."""
+
+from __future__ import annotations
+
+import math
+import threading
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import torch
+from hypothesis import given
+from hypothesis import strategies as st
+
+from nispcodec.fit.losses import CURVATURES, chart_loss, uv_loss
+from nispcodec.fit.module import Module, snapped
+from nispcodec.fit.prune import everything
+from nispcodec.fit.rounding import nearest, round_weights
+from nispcodec.fit.task import Batch, Curvature, Rounding
+from nispcodec.fit.train import train
+from nispcodec.network import Network, NetworkSpec
+from nispcodec.progress import silent
+from tests.fit.test_train import ball_samples, module_of, sdf_task
+
+SPECS = {
+    "sdf": NetworkSpec((7, 6), 1, w0=5.0),
+    "chart": NetworkSpec((8,), 3),
+    "uv": NetworkSpec((6, 5), 2, conditioning="frames", charts=4, embedding=3),
+}
+POINTS = 500
+
+
+def batch(name: str) -> Batch:
+    generator = torch.Generator().manual_seed(0)
+    points = Batch.of(ball_samples(POINTS, 0), "cpu")
+    charts = torch.randint(3, (POINTS,), generator=generator)
+    return replace(points, chart=charts, uv=torch.rand(POINTS, 2, generator=generator))
+
+
+def rounded(name: str, price: float, budget: float = 0.0) -> tuple[Module, Module]:
+    """A module of random weights, and the same rounded."""
+    before, after = (Module(SPECS[name], torch.Generator().manual_seed(0), "cpu") for _ in range(2))
+    rounding = Rounding(CURVATURES[name], price, budget)
+    round_weights(after, batch(name), rounding, torch.Generator().manual_seed(0))
+    return before, after
+
+
+@pytest.mark.parametrize("name", SPECS)
+def test_every_tensor_is_symbols_times_its_step(name: str) -> None:
+    network = rounded(name, 1e-3)[1].network()
+    assert set(network.steps) == set(SPECS[name].shapes)
+    for tensor_name, tensor in network.tensors.items():
+        step = np.float32(network.steps[tensor_name])
+        assert np.array_equal(tensor, np.rint(tensor / step).astype(np.float32) * step)
+        assert math.frexp(network.steps[tensor_name])[0] * 16 % 1 == 0
+
+
+@pytest.mark.parametrize("name", SPECS)
+def test_the_file_holds_what_was_rounded(name: str) -> None:
+    module = rounded(name, 1e-3)[1]
+    part = batch(name)
+    stored = module_of(module.network())(part.points, part.chart).detach()
+    assert torch.allclose(module(part.points, part.chart).detach(), stored, atol=1e-4)
+
+
+def outputs(module: Module, part: Batch) -> torch.Tensor:
+    return module(part.points, part.chart).detach()
+
+
+@pytest.mark.parametrize("name", ["sdf", "uv"])
+def test_errors_cancel(name: str) -> None:
+    """Each weight to its own nearest symbol, on the same grid, changes the answers far more."""
+    before, after = rounded(name, 1e-5)
+    assert after.steps is not None
+    alone = Module(SPECS[name], torch.Generator().manual_seed(0), "cpu")
+    grid = after.steps[alone.groups]
+    alone.weights.data = ((before.weights.detach() / grid).round() * grid).float()
+    part = batch(name)
+    off = [(outputs(each, part) - outputs(before, part)).square().mean() for each in (after, alone)]
+    assert off[0] < 0.6 * off[1]
+
+
+@pytest.mark.parametrize(("name", "loss"), [("chart", chart_loss), ("uv", uv_loss)])
+def test_factors_are_of_the_shape_of_the_outputs(name: str, loss: object) -> None:
+    part = batch(name)
+    found = CURVATURES[name].factors(outputs(rounded(name, 1e-3)[0], part), part)
+    assert found.shape[:2] == (POINTS, SPECS[name].outputs)
+    assert torch.isfinite(found).all()
+
+
+def squared(outputs: torch.Tensor, _: Batch) -> torch.Tensor:
+    return torch.ones(len(outputs), 1, 1)
+
+
+def test_the_rise_is_what_the_price_says() -> None:
+    """Of half the mean square, a loss whose second derivatives these are."""
+    module = Module(SPECS["sdf"], torch.Generator().manual_seed(0), "cpu")
+    part = batch("sdf")
+    before, price = outputs(module, part), 1e-10
+    rounding = Rounding(Curvature(squared, 1e-6), price)
+    round_weights(module, part, rounding, torch.Generator().manual_seed(0))
+    rise = float((outputs(module, part) - before).square().mean()) / 2
+    assert rise == pytest.approx(price / (2 * math.log(2)), rel=0.5)
+
+
+@given(st.integers(0, 2**32), st.integers(1, 12))
+def test_nearest_is_at_most_half_a_step_off_in_the_metric(seed: int, size: int) -> None:
+    """Babai's bound: half the diagonal, in every coordinate of the rotated lattice."""
+    rng = np.random.default_rng(seed)
+    root = np.triu(rng.normal(size=(size, size)))
+    root[np.diag_indices(size)] = rng.uniform(0.1, 2, size)
+    values = rng.normal(0, 10, size)
+    found = nearest(values, root)
+    assert np.array_equal(found, np.rint(found))
+    assert (np.abs(root @ (found - values)) <= np.diag(root) / 2 + 1e-9).all()
+
+
+@pytest.mark.parametrize("bits", [4.0, 7.0, 10.0])
+def test_a_budget_is_kept(bits: float) -> None:
+    count = SPECS["sdf"].weight_count
+    network = rounded("sdf", 1e-3, bits * count)[1].network()
+    found = sum(
+        tensor.size * max(0.0, math.log2(float(np.sqrt((tensor / step) ** 2).mean()) * 4.1327))
+        for tensor, step in zip(network.tensors.values(), network.steps.values(), strict=True)
+        if tensor.any()
+    )
+    assert found / count == pytest.approx(bits, rel=0.2)
+
+
+def test_what_is_pruned_stays_zero_and_a_whole_tensor_may_go() -> None:
+    module = Module(SPECS["sdf"], torch.Generator().manual_seed(0), "cpu")
+    mask = {name: np.ones_like(kept) for name, kept in everything(SPECS["sdf"]).items()}
+    mask["weight.1"][:] = False
+    mask["weight.0"][::2] = False
+    module.prune(mask)
+    rounding = Rounding(CURVATURES["sdf"], 1e-6)
+    round_weights(module, batch("sdf"), rounding, torch.Generator().manual_seed(0))
+    network = module.network()
+    assert not network.tensors["weight.1"].any()
+    assert not network.tensors["weight.0"][::2].any()
+    assert network.tensors["weight.0"].any()
+
+
+@pytest.mark.parametrize("step", [1e-9, 0.0123, 1.0, 31.9, 1e6])
+def test_a_snapped_step_is_near_and_stays(step: float) -> None:
+    near = snapped(step)
+    assert near == pytest.approx(step, rel=1 / 16)
+    assert snapped(near * (1 + 1e-6)) == near
+    assert math.frexp(near)[0] * 16 % 1 == 0
+
+
+def fitted(price: float) -> Network:
+    task = replace(sdf_task(100), rounding=Rounding(CURVATURES["sdf"], price))
+    return train(task, 0, "cpu", threading.Lock(), silent)
+
+
+def test_a_higher_price_buys_fewer_bits() -> None:
+    bits = [
+        float(np.log2(network.tensors["weight.1"].std() / network.steps["weight.1"]))
+        for network in (fitted(1e-3), fitted(1e-5))
+    ]
+    assert bits[0] < bits[1] - 0.5
+
+
+def test_without_rounding_the_weights_stay_float() -> None:
+    assert not train(sdf_task(50), 0, "cpu", threading.Lock(), silent).steps
