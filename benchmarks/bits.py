@@ -1,9 +1,9 @@
-"""Bits a weight of `.nisp` files: predicted by the encoder's rate term, and written.
+"""Bits a weight of `.nisp` files: as the encoder counts them for a target size, and written.
 
     python -m benchmarks.bits FOLDER [-o benchmarks/results/bits.json]
 
 Predicted: the entropy of a Gaussian of each tensor's power on the grid of its step, as in
-`nispcodec.fit.quantise`. Beside it, what rounding every weight one step nearer to 0 would save: the
+`nispcodec.fit.rounding`. Beside it, what rounding every weight one step nearer to 0 would save: the
 most that a rounding which weighs rate against distortion could gain, were distortion free.
 """
 
@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from benchmarks.machine import commit
-from nispcodec.fit.quantise import GAUSSIAN_BITS
+from nispcodec.fit.rounding import GAUSSIAN_BITS
 from nispcodec.format import unpack, weights
 from nispcodec.format.constants import NETS
 from nispcodec.format.container import read_container, write_container
@@ -32,7 +32,7 @@ def symbols_of(network: Network) -> list[NDArray[np.float64]]:
 
 
 def entropy(symbols: NDArray[np.float64]) -> float:
-    """Bits of a tensor by the rate term."""
+    """Bits of a tensor as the encoder counts them."""
     log_spread = 0.5 * np.log2(np.square(symbols).mean() + 1e-12) + GAUSSIAN_BITS
     return float(symbols.size * np.logaddexp2(0, 2 * log_spread) / 2)
 

@@ -2,8 +2,8 @@
 
     python -m benchmarks.pruning_or_quantising --assets ../shared/assets [--table]
 
-SDF and UV networks of each asset and seed: float16 and lottery tickets of it at `RATES`, quantised
-in training at `PRICES`, and both: the tickets' masks held while quantising at `BOTH`. All trainings
+SDF and UV networks of each asset and seed: float16 and lottery tickets of it at `RATES`, rounded
+at `PRICES`, and both: the tickets' masks held, and what is left rounded at `BOTH`. All trainings
 have as many steps and start from the same weights. Kept case by case: an interrupted run goes on.
 The default takes a quarter of an hour of one core, and leaves all networks far from what they can
 reach; `--steps 4000` says more. `--table` trains nothing. In the table each setting is beside
@@ -30,9 +30,16 @@ from benchmarks.codings import stored
 from benchmarks.machine import commit, machine, versions
 from nispcodec.decode.evaluate import evaluate
 from nispcodec.encoder import GAP
-from nispcodec.fit.losses import distance_error, relative_distance_loss, uv_error, uv_loss
+from nispcodec.fit.losses import (
+    CURVATURES,
+    distance_error,
+    relative_distance_loss,
+    uv_error,
+    uv_loss,
+)
+from nispcodec.fit.presets import PRICES as PRESET_PRICES
 from nispcodec.fit.prune import Mask
-from nispcodec.fit.task import Schedule, Task
+from nispcodec.fit.task import Rounding, Schedule, Task
 from nispcodec.fit.tickets import tickets
 from nispcodec.fit.train import train
 from nispcodec.mesh.load import load_mesh
@@ -48,8 +55,10 @@ ASSETS = ("spot", "chess_king", "tea_set_01")
 NETWORKS = ("sdf", "uv")
 SEEDS = 2
 RATES = (0.3, 0.5, 0.7)
-PRICES = (0.005, 0.03, 0.15)
-BOTH = 0.03
+PRICES = (1.0, 6.0, 36.0)
+BOTH = 6.0
+"""Times what the presets pay for a bit."""
+
 STEPS, BATCH = 1500, 1024
 SAMPLER_SEED = 0
 
@@ -84,7 +93,8 @@ def measure(task: Task, seed: int) -> list[Record]:
     masks: dict[float, Mask] = {}
 
     def fitted(mask: Mask, price: float) -> Network:
-        priced = replace(task, schedule=replace(task.schedule, price=price))
+        rounding = Rounding(CURVATURES[task.name], price * PRESET_PRICES[task.name])
+        priced = replace(task, rounding=rounding if price else None)
         return train(priced, seed, "cpu", nullcontext(), silent, mask)
 
     def add(network: Network, rate: float, price: float) -> None:

@@ -18,6 +18,7 @@ from torch import Tensor
 from torch.func import grad, vmap
 from torch.nn import functional
 
+from nispcodec.errors import FitError
 from nispcodec.fit.module import Module, snapped
 from nispcodec.fit.task import Batch, Curvature, Rounding
 
@@ -26,8 +27,9 @@ BLOCK = 2_500
 """Weights of which all pairs are looked at together: beyond, memory and time run away."""
 
 ENTRIES = 4_000_000
-SWEEPS = 1
 SHARES = 0.0, 0.1, 0.3, 1.0
+"""Of Newton's step: beyond some way the outputs are no longer straight in the weights."""
+
 GAUSSIAN_BITS = 0.5 * math.log2(2 * math.pi * math.e)
 FINEST, COARSEST = 1e-6, 1e3
 OCTAVES, CLOSE = 32.0, 1e-3
@@ -41,18 +43,18 @@ def round_weights(
 ) -> None:
     """Put the weights on a grid, with a step for each tensor; what is pruned costs nothing."""
     batch = samples.chosen(torch.randperm(len(samples), generator=generator)[:SAMPLES])
-    bent = _Bent(module, batch, rounding.curvature)
-    # Within a block the last is rounded first: from the first layer on, which is the least linear.
+    rise = _Rise(module, batch, rounding.curvature)
+    # The last of a block is rounded first: so it goes from the first layer to the last, in which
+    # the outputs are linear and what went wrong before is made up for best.
     order = module.places.flip(0)
     blocks = torch.split(order, BLOCK)
-    roots = bent.roots(blocks, generator)
+    roots = rise.roots(blocks, generator)
     module.steps = _steps(module, order, roots, rounding)
-    for _ in range(SWEEPS):
-        for places, root in zip(reversed(blocks), reversed(roots), strict=True):
-            values = bent.better(places, root)
-            grid = module.steps[module.groups[places]]
-            symbols = nearest((values / grid).numpy(), (root * grid).numpy())
-            bent.move(places, torch.from_numpy(symbols) * grid)
+    for places, root in zip(reversed(blocks), reversed(roots), strict=True):
+        values = rise.least(places, root)
+        grid = module.steps[module.groups[places]]
+        symbols = nearest((values / grid).numpy(), (root * grid).numpy())
+        rise.move(places, torch.from_numpy(symbols) * grid)
 
 
 def nearest(values: Doubles, root: Doubles) -> Doubles:
@@ -65,8 +67,8 @@ def nearest(values: Doubles, root: Doubles) -> Doubles:
     return found
 
 
-class _Bent:
-    """The rise of the loss as a square of how far the outputs are from what they were at first."""
+class _Rise:
+    """How much the loss rises: half the square of how far the outputs are from where they were."""
 
     def __init__(self, module: Module, batch: Batch, curvature: Curvature) -> None:
         self.module, self.batch, self.damping = module, batch, curvature.damping
@@ -78,27 +80,24 @@ class _Bent:
         """Its derivatives by the weights, where they are now."""
         weights = self.module.weights
         weights.grad = None
-        self._rise().backward()  # type: ignore[no-untyped-call]
+        self().backward()  # type: ignore[no-untyped-call]
         assert weights.grad is not None
         return weights.grad.cpu().double()
 
-    def better(self, places: Tensor, root: Tensor) -> Tensor:
-        """What these weights should be, as the others are: some way along Newton's step."""
+    def least(self, places: Tensor, root: Tensor) -> Tensor:
+        """Values in these places that make it least, as far as Newton's step leads there."""
         values = self.module.weights.detach().cpu().double()[places]
         slope = self.slope()[places]
         step = torch.cholesky_solve(slope[:, None], root, upper=True)[:, 0]
         rises = {}
         for share in SHARES:
             self.move(places, values - share * step)
-            rises[share] = self.rise()
+            with torch.no_grad():
+                rises[share] = float(self())
         return values - min(rises, key=rises.__getitem__) * step
 
-    @torch.no_grad()
-    def rise(self) -> float:
-        """How much it is."""
-        return float(self._rise())
-
-    def _rise(self) -> Tensor:
+    def __call__(self) -> Tensor:
+        """It, as the weights are now."""
         batch = self.batch
         off = self.module(batch.points, batch.chart) - self.first
         return (off[:, None] @ self.factors).square().sum() / (2 * len(batch))
@@ -138,8 +137,16 @@ def _slopes(module: Module, weights: Tensor, batch: Batch, directions: Tensor) -
 
 
 def _root(square: Tensor, damping: float) -> Tensor:
-    square.diagonal().add_(damping * float(square.diagonal().mean()) + TINY)
-    return torch.linalg.cholesky(square, upper=True)
+    """Upper Cholesky factor, with ten times the damping until there is one."""
+    mean = float(square.diagonal().mean()) + TINY
+    if not math.isfinite(mean):
+        raise FitError("weights cannot be rounded: expected finite derivatives, found NaN")
+    while True:
+        damped = square + damping * mean * torch.eye(len(square), dtype=square.dtype)
+        root, failed = torch.linalg.cholesky_ex(damped, upper=True)
+        if not failed:
+            return root
+        damping *= 10
 
 
 def _steps(module: Module, order: Tensor, roots: Sequence[Tensor], rounding: Rounding) -> Tensor:
@@ -152,8 +159,8 @@ def _steps(module: Module, order: Tensor, roots: Sequence[Tensor], rounding: Rou
     stiffness = torch.cat([root.diagonal().square() for root in roots])
     counts = torch.bincount(groups, minlength=len(scales)).double()
     total = torch.zeros_like(counts).index_add_(0, groups, stiffness)
-    rise = rounding.price / (2 * math.log(2))
-    steps = (24 * rise / len(order) * counts / (total + TINY)).sqrt()
+    allowed = rounding.price / (2 * math.log(2))
+    steps = (24 * allowed / len(order) * counts / (total + TINY)).sqrt()
     if rounding.budget:
         weights = module.weights.detach().cpu().double()[order]
         steps *= 2 ** _octaves(weights, groups, steps, rounding.budget)

@@ -12,7 +12,8 @@ import torch
 from hypothesis import given
 from hypothesis import strategies as st
 
-from nispcodec.fit.losses import CURVATURES, chart_loss, uv_loss
+from nispcodec.errors import FitError
+from nispcodec.fit.losses import CURVATURES
 from nispcodec.fit.module import Module, snapped
 from nispcodec.fit.prune import everything
 from nispcodec.fit.rounding import nearest, round_weights
@@ -80,8 +81,8 @@ def test_errors_cancel(name: str) -> None:
     assert off[0] < 0.6 * off[1]
 
 
-@pytest.mark.parametrize(("name", "loss"), [("chart", chart_loss), ("uv", uv_loss)])
-def test_factors_are_of_the_shape_of_the_outputs(name: str, loss: object) -> None:
+@pytest.mark.parametrize("name", SPECS)
+def test_factors_are_of_the_shape_of_the_outputs(name: str) -> None:
     part = batch(name)
     found = CURVATURES[name].factors(outputs(rounded(name, 1e-3)[0], part), part)
     assert found.shape[:2] == (POINTS, SPECS[name].outputs)
@@ -139,6 +140,32 @@ def test_what_is_pruned_stays_zero_and_a_whole_tensor_may_go() -> None:
     assert not network.tensors["weight.1"].any()
     assert not network.tensors["weight.0"][::2].any()
     assert network.tensors["weight.0"].any()
+
+
+def test_fewer_points_than_weights_will_do() -> None:
+    module = Module(SPECS["sdf"], torch.Generator().manual_seed(0), "cpu")
+    few = next(iter(batch("sdf").parts(5)))
+    rounding = Rounding(Curvature(squared, 0.0), 1e-6)
+    round_weights(module, few, rounding, torch.Generator().manual_seed(0))
+    assert torch.isfinite(module.weights).all()
+
+
+def test_weights_that_are_not_finite_are_an_error() -> None:
+    module = Module(SPECS["sdf"], torch.Generator().manual_seed(0), "cpu")
+    module.weights.data[3] = float("nan")
+    rounding = Rounding(CURVATURES["sdf"], 1e-3)
+    with pytest.raises(FitError, match="expected finite derivatives, found NaN"):
+        round_weights(module, batch("sdf"), rounding, torch.Generator().manual_seed(0))
+
+
+def test_blocks_make_up_for_each_other(monkeypatch: pytest.MonkeyPatch) -> None:
+    part, off = batch("sdf"), []
+    for size, shares in ((40, (0.0,)), (40, (0.0, 0.1, 0.3, 1.0))):
+        monkeypatch.setattr("nispcodec.fit.rounding.BLOCK", size)
+        monkeypatch.setattr("nispcodec.fit.rounding.SHARES", shares)
+        before, after = rounded("sdf", 1e-6)
+        off.append(float((outputs(before, part) - outputs(after, part)).abs().mean()))
+    assert off[1] < 0.9 * off[0]
 
 
 @pytest.mark.parametrize("step", [1e-9, 0.0123, 1.0, 31.9, 1e6])
