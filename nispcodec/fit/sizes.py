@@ -18,7 +18,7 @@ LAYERS = {"sdf": 4, "chart": 3, "uv": 4}
 MIN_WIDTH, MAX_WIDTH = 8, 128
 MULTIPLE = 2
 
-BITS = {"sdf": 9.6, "chart": 7.2, "uv": 11.9}
+BITS = {"sdf": 7.1, "chart": 5.2, "uv": 8.3}
 """About what a weight takes in the file at the default price: medians of eight assets."""
 
 
@@ -41,7 +41,7 @@ class Model:
 MODELS = {
     "sdf": Model(30, 1.0e-3, 0.7, 22, 38),
     "chart": Model(21, 0.03, 0.4, 18, 48),
-    "uv": Model(22, 9.3e-4, 0.5, 14, 56),
+    "uv": Model(20, 9.3e-4, 0.8, 12, 40),
 }
 
 AREA, AREA_POWER = 5.0, 0.4
