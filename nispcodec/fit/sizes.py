@@ -39,7 +39,7 @@ class Model:
 
 
 MODELS = {
-    "sdf": Model(30, 1.0e-3, 0.7, 22, 32),
+    "sdf": Model(30, 1.0e-3, 0.7, 22, 36),
     "chart": Model(21, 0.03, 0.4, 18, 48),
     "uv": Model(20, 9.3e-4, 0.6, 12, 40),
 }
