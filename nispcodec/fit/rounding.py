@@ -51,10 +51,10 @@ def round_weights(
     roots = rise.roots(blocks, generator)
     module.steps = _steps(module, order, roots, rounding)
     for places, root in zip(reversed(blocks), reversed(roots), strict=True):
-        values = rise.least(places, root)
-        grid = module.steps[module.groups[places]]
-        symbols = nearest((values / grid).numpy(), (root * grid).numpy())
-        rise.move(places, torch.from_numpy(symbols) * grid)
+        values, grid = rise.least(places, root), module.steps[module.groups[places]]
+        together = torch.from_numpy(nearest((values / grid).numpy(), (root * grid).numpy()))
+        # Steps so coarse that the rise is no square any more: then each weight by itself.
+        rise.best(places, [together * grid, (values / grid).round() * grid])
 
 
 def nearest(values: Doubles, root: Doubles) -> Doubles:
@@ -89,12 +89,18 @@ class _Rise:
         values = self.module.weights.detach().cpu().double()[places]
         slope = self.slope()[places]
         step = torch.cholesky_solve(slope[:, None], root, upper=True)[:, 0]
-        rises = {}
-        for share in SHARES:
-            self.move(places, values - share * step)
-            with torch.no_grad():
-                rises[share] = float(self())
-        return values - min(rises, key=rises.__getitem__) * step
+        return self.best(places, [values - share * step for share in SHARES])
+
+    @torch.no_grad()
+    def best(self, places: Tensor, candidates: Sequence[Tensor]) -> Tensor:
+        """Of the candidates for these places that with the least rise, which is now there."""
+        rises = []
+        for values in candidates:
+            self._move(places, values)
+            rises.append(float(self()))
+        chosen = candidates[int(np.argmin(rises))]
+        self._move(places, chosen)
+        return chosen
 
     def __call__(self) -> Tensor:
         """It, as the weights are now."""
@@ -102,9 +108,7 @@ class _Rise:
         off = self.module(batch.points, batch.chart) - self.first
         return (off[:, None] @ self.factors).square().sum() / (2 * len(batch))
 
-    @torch.no_grad()
-    def move(self, places: Tensor, values: Tensor) -> None:
-        """Put new values in these places."""
+    def _move(self, places: Tensor, values: Tensor) -> None:
         weights = self.module.weights
         weights.index_copy_(0, places.to(weights.device), values.to(weights))
 
