@@ -42,7 +42,8 @@ def round_weights(
     module: Module, samples: Batch, rounding: Rounding, generator: torch.Generator
 ) -> None:
     """Put the weights on a grid, with a step for each tensor; what is pruned costs nothing."""
-    batch = samples.chosen(torch.randperm(len(samples), generator=generator)[:SAMPLES])
+    rows = torch.randperm(len(samples), generator=generator)[:SAMPLES]
+    batch = samples.chosen(rows.to(samples.points.device))
     rise = _Rise(module, batch, rounding.curvature)
     # The last of a block is rounded first: so it goes from the first layer to the last, in which
     # the outputs are linear and what went wrong before is made up for best.
@@ -78,11 +79,8 @@ class _Rise:
 
     def slope(self) -> Tensor:
         """Its derivatives by the weights, where they are now."""
-        weights = self.module.weights
-        weights.grad = None
-        self().backward()  # type: ignore[no-untyped-call]
-        assert weights.grad is not None
-        return weights.grad.cpu().double()
+        (slope,) = torch.autograd.grad(self(), self.module.weights)
+        return slope.cpu().double()
 
     def least(self, places: Tensor, root: Tensor) -> Tensor:
         """Values in these places that make it least, as far as Newton's step leads there."""

@@ -56,8 +56,8 @@ class Curvature:
     """How fast a loss rises about where it is: what rounding the weights will cost.
 
     factors(outputs (n, k), batch) -> (n, k, r): each point's second derivatives by its outputs are
-    the product of its factor and that one's transpose. `damping`, as a share of their mean, is
-    added to the second derivatives by each weight: the less they hold further off, the more.
+    the product of its factor and that one's transpose. `damping` above 0, as a share of their mean,
+    is added to the second derivatives by each weight: the less they hold further off, the more.
     """
 
     factors: Callable[[Tensor, Batch], Tensor]

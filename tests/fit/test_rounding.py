@@ -68,31 +68,35 @@ def outputs(module: Module, part: Batch) -> torch.Tensor:
     return module(part.points, part.chart).detach()
 
 
+def alone(before: Module, steps: torch.Tensor | None) -> Module:
+    """A copy, each weight rounded to the nearest symbol of its own."""
+    assert steps is not None
+    module = Module(before.spec, torch.Generator(), "cpu")
+    grid = steps[module.groups]
+    module.weights.data = ((before.weights.detach() / grid).round() * grid).float()
+    return module
+
+
 @pytest.mark.parametrize("name", ["sdf", "uv"])
 def test_errors_cancel(name: str) -> None:
     """Each weight to its own nearest symbol, on the same grid, changes the answers far more."""
     before, after = rounded(name, 1e-6)
-    assert after.steps is not None
-    alone = Module(SPECS[name], torch.Generator().manual_seed(0), "cpu")
-    grid = after.steps[alone.groups]
-    alone.weights.data = ((before.weights.detach() / grid).round() * grid).float()
-    part = batch(name)
-    off = [(outputs(each, part) - outputs(before, part)).square().mean() for each in (after, alone)]
+    part, each_alone = batch(name), alone(before, after.steps)
+    off = [
+        (outputs(module, part) - outputs(before, part)).square().mean()
+        for module in (after, each_alone)
+    ]
     assert off[0] < 0.6 * off[1]
 
 
 @pytest.mark.parametrize("price", [1e-2, 1e-3, 1e-4, 1e-5])
 def test_it_is_never_worse_than_each_weight_by_itself(price: float) -> None:
     before, after = rounded("sdf", price)
-    alone = Module(SPECS["sdf"], torch.Generator().manual_seed(0), "cpu")
-    assert after.steps is not None
-    grid = after.steps[alone.groups]
-    alone.weights.data = ((before.weights.detach() / grid).round() * grid).float()
-    part = batch("sdf")
+    part, each_alone = batch("sdf"), alone(before, after.steps)
     factors = CURVATURES["sdf"].factors(outputs(before, part), part)[:, 0]
     rises = [
-        ((outputs(each, part) - outputs(before, part)) * factors).square().mean()
-        for each in (after, alone)
+        ((outputs(module, part) - outputs(before, part)) * factors).square().mean()
+        for module in (after, each_alone)
     ]
     assert rises[0] <= rises[1]
 
