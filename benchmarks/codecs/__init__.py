@@ -28,6 +28,8 @@ CODECS = {
 }
 # Twenty minutes an asset and an hour pruned: only when asked for.
 OPTIONAL = {"nisp_paper"}
+# Two points of these at once would stand in each other's way.
+EVERY_CORE = {"nisp", "nisp_paper"}
 
 
 class Unavailable(Exception):

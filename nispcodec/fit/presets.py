@@ -28,7 +28,7 @@ PAPER_LEVELS = 5
 PAPER_STEPS = 40_000
 """What twenty minutes on two cores allow of the published 2000 epochs of 10^6 samples."""
 
-PRICES = {"sdf": 5e-3, "chart": 0.02, "uv": 4e-5}
+PRICES = {"sdf": 7.5e-3, "chart": 0.02, "uv": 6e-5}
 """How much a bit a weight less may raise the loss."""
 
 BATCHES = {"sdf": 2048, "chart": 1024, "uv": 2048}
@@ -60,20 +60,21 @@ PROBE_STEPS = {"sdf": 1000, "chart": 600, "uv": 1000}
 class Effort:
     """`seconds` of one core that the longest fit takes; networks `scale` times as wide.
 
-    `reviews`: of the SDF; without them parts go missing that are a small share of the area.
+    `review`: steps of the SDF from one review to the next; without them parts go missing that are
+    a small share of the area.
     `band`: the first frequencies of the SDF, relative to SIREN's.
     """
 
     seconds: float
     scale: float
-    reviews: int
+    review: int
     band: float = 1.0
 
 
 EFFORTS = {
-    "fast": Effort(9.0, 0.8, 3, PROBE_BAND),
-    "balanced": Effort(46.0, 1.0, 9),
-    "best": Effort(330.0, 1.2, 15),
+    "fast": Effort(9.0, 0.8, 800, PROBE_BAND),
+    "balanced": Effort(46.0, 1.0, 800),
+    "best": Effort(330.0, 1.2, 4000),
 }
 
 
@@ -152,7 +153,7 @@ def sine_tasks(
             _schedule(name, steps, effort.band),
             batch=batch,
             rate=FINE_RATE if fine and name == "sdf" else RATES[name],
-            reviews=effort.reviews if name == "sdf" else 0,
+            reviews=steps // effort.review if name == "sdf" else 0,
         )
         rounding = Rounding(CURVATURES[name], PRICES[name], budgets.get(name, 0.0))
         tasks.append(replace(_task(problem.sets, name, spec, schedule), rounding=rounding))

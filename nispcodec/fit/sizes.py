@@ -18,7 +18,7 @@ LAYERS = {"sdf": 4, "chart": 3, "uv": 4}
 MIN_WIDTH, MAX_WIDTH = 8, 128
 MULTIPLE = 2
 
-BITS = {"sdf": 7.1, "chart": 5.2, "uv": 8.3}
+BITS = {"sdf": 6.8, "chart": 5.2, "uv": 8.0}
 """About what a weight takes in the file at the default price: medians of eight assets."""
 
 

@@ -37,6 +37,10 @@ DIVERGED = 4.0
 SETTLED = 0.25
 RETRIES = 4
 
+ROUNDINGS, SLIGHT = 3, 1.05
+"""Rounding sees some of the samples, and now and then overlooks what costs most: by how much the
+held-out error may rise before it is tried again with others, and how often at most."""
+
 
 def train(
     task: Task,
@@ -116,12 +120,17 @@ class _Run:
         self.module.hold()
 
     def _round(self, rounding: Rounding) -> None:
+        """Round the best weights, again with other samples where that costs much."""
         steps, before = self.task.schedule.steps, self.best_error
         told = Progress(self.task.name, "quantise", steps, steps, self.loss, before, 0.0)
-        self.listen(told)
-        round_weights(self.module, self.samples, rounding, self.generator)
-        with torch.no_grad():
-            after = float(self.task.error(self.module, self.held_out))
+        tries: list[tuple[float, Tensor, Tensor | None]] = []
+        while len(tries) < ROUNDINGS and all(error > SLIGHT * before for error, *_ in tries):
+            self.listen(told)
+            self._restore()
+            round_weights(self.module, self.samples, rounding, self.generator)
+            tries.append((self._error(), self._weights(), self.module.steps))
+        after, self.best, self.module.steps = min(tries, key=lambda each: each[0])
+        self._restore()
         note = f"held-out error {before:.3g} before, {after:.3g} after"
         self.listen(replace(told, error=after, note=note))
 
@@ -161,10 +170,9 @@ class _Run:
         known = math.isfinite(self.loss)
         self.loss = LOSS_MEMORY * self.loss + (1 - LOSS_MEMORY) * loss if known else loss
 
-    @torch.no_grad()
     def _check(self, done: int) -> str:
         """Measure the held-out error; keep the best weights, or go back to them."""
-        self.error = float(self.task.error(self.module, self.held_out))
+        self.error = self._error()
         if self.error < self.best_error:
             self.best_error, self.best = self.error, self._weights()
             return ""
@@ -196,6 +204,10 @@ class _Run:
             adam.step()
 
         return move
+
+    @torch.no_grad()
+    def _error(self) -> float:
+        return float(self.task.error(self.module, self.held_out))
 
     def _weights(self) -> Tensor:
         return self.module.weights.detach().clone()

@@ -17,15 +17,24 @@ from torch import Tensor
 from nispcodec.decode.evaluate import evaluate
 from nispcodec.errors import FitError
 from nispcodec.fit import parallel
-from nispcodec.fit.losses import chart_error, chart_loss, distance_error, relative_distance_loss
-from nispcodec.fit.module import Module
+from nispcodec.fit.losses import (
+    CURVATURES,
+    chart_error,
+    chart_loss,
+    distance_error,
+    relative_distance_loss,
+)
+from nispcodec.fit.module import Module, snapped
 from nispcodec.fit.parallel import fit_networks, resolve_device
 from nispcodec.fit.soap import Soap
-from nispcodec.fit.task import Batch, Schedule, Task
+from nispcodec.fit.task import Batch, Rounding, Schedule, Task
 from nispcodec.fit.train import train
 from nispcodec.mesh.sample_set import SampleSet
 from nispcodec.network import Network, NetworkSpec
 from nispcodec.progress import Progress, silent
+
+FINE = 2.0**-24
+"""A step that nobody sees."""
 
 
 def ball_samples(count: int, seed: int) -> SampleSet:
@@ -109,7 +118,7 @@ def test_a_hopeless_fit_is_an_error() -> None:
 
 
 def test_the_same_seed_gives_the_same_weights_on_any_number_of_threads() -> None:
-    tasks = [sdf_task(100), chart_task()]
+    tasks = [sdf_task(), chart_task()]
     results = [
         fit_networks(tasks, seed, "cpu", threads, silent)
         for seed, threads in ((0, 1), (0, 2), (1, 2))
@@ -219,3 +228,24 @@ def test_reviews_bring_back_a_part_that_few_samples_show() -> None:
         held_out=two_balls(500, 1),
     )
     assert share_found(reviews=4) > 0.5 > share_found(reviews=0)
+
+
+@pytest.mark.parametrize(("spoils", "kept"), [([2.0, 0.5, 1.0], 0.5), ([0.0], 0.0)])
+def test_rounding_that_costs_much_is_tried_again_and_the_best_stays(
+    spoils: list[float], kept: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """As many times as there are `spoils`, each from the best weights."""
+    untried = list(spoils)
+
+    def spoiled(module: Module, *_: object) -> None:
+        with torch.no_grad():
+            module.weights.add_(untried.pop(0))
+        scales = module.scales.values()
+        module.steps = torch.tensor([snapped(FINE / scale) * scale for scale in scales])
+
+    monkeypatch.setattr("nispcodec.fit.train.round_weights", spoiled)
+    plain = module_of(run(sdf_task())).weights
+    task = replace(sdf_task(), rounding=Rounding(CURVATURES["sdf"], 1e-3))
+    rounded = module_of(run(task)).weights
+    assert untried == []
+    assert float((rounded - plain - kept).detach().abs().max()) < 1e-5
