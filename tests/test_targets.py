@@ -48,7 +48,7 @@ def by_law(tasks: list[Task], listen: Listener) -> Networks:
 
 
 def fitting(fit=by_law, listen: Listener = silent) -> Fitting:
-    return Fitting(problem(), Effort(2.0, 0.5, 100), fit, listen)
+    return Fitting(problem(), Effort(2.0, 0.5, 1, 100), fit, listen)
 
 
 def document(networks: Mapping[str, Network]) -> Document:

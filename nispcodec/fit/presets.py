@@ -60,21 +60,22 @@ PROBE_STEPS = {"sdf": 1000, "chart": 600, "uv": 1000}
 class Effort:
     """`seconds` of one core that the longest fit takes; networks `scale` times as wide.
 
-    `review`: steps of the SDF from one review to the next; without them parts go missing that are
+    `reviews`: of the SDF at least, and one in `every` steps; without them parts go missing that are
     a small share of the area.
     `band`: the first frequencies of the SDF, relative to SIREN's.
     """
 
     seconds: float
     scale: float
-    review: int
+    reviews: int
+    every: int
     band: float = 1.0
 
 
 EFFORTS = {
-    "fast": Effort(9.0, 0.8, 800, PROBE_BAND),
-    "balanced": Effort(46.0, 1.0, 800),
-    "best": Effort(330.0, 1.2, 4000),
+    "fast": Effort(9.0, 0.8, 3, 800, PROBE_BAND),
+    "balanced": Effort(46.0, 1.0, 9, 800),
+    "best": Effort(330.0, 1.2, 15, 4000),
 }
 
 
@@ -153,7 +154,7 @@ def sine_tasks(
             _schedule(name, steps, effort.band),
             batch=batch,
             rate=FINE_RATE if fine and name == "sdf" else RATES[name],
-            reviews=steps // effort.review if name == "sdf" else 0,
+            reviews=max(effort.reviews, steps // effort.every) if name == "sdf" else 0,
         )
         rounding = Rounding(CURVATURES[name], PRICES[name], budgets.get(name, 0.0))
         tasks.append(replace(_task(problem.sets, name, spec, schedule), rounding=rounding))
