@@ -34,8 +34,9 @@ USUAL = [name for name in NAMES if name not in OPTIONAL]
 @click.option(
     "--jobs",
     type=click.IntRange(1),
-    default=os.cpu_count,
-    help="Points at once, of codecs that use one core.  [default: a point for each core]",
+    default=os.cpu_count() or 1,
+    show_default="one a core",
+    help="Points at once, of codecs that use one core.",
 )
 @click.option("--again", is_flag=True, help="Measure finished points again.")
 @click.option(

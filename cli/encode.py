@@ -30,7 +30,7 @@ IMAGE_FORMATS = ("webp", "avif", "jpeg")
     type=click.Choice(PRESETS),
     default="balanced",
     show_default=True,
-    help="About 40 s: fast, 2 min: balanced, 10 min: best, on two cores.",
+    help="20 to 50 s: fast, 1 to 2 min: balanced, 5 to 10 min: best, on two cores.",
 )
 @click.option(
     "--target-size",

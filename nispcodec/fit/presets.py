@@ -60,8 +60,8 @@ PROBE_STEPS = {"sdf": 1000, "chart": 600, "uv": 1000}
 class Effort:
     """`seconds` of one core that the longest fit takes; networks `scale` times as wide.
 
-    `reviews`: of the SDF at least, and one in `every` steps; without them parts go missing that are
-    a small share of the area.
+    `reviews`: of the SDF at least, and at least one in `every` steps; without them parts go missing
+    that are a small share of the area.
     `band`: the first frequencies of the SDF, relative to SIREN's.
     """
 

@@ -38,8 +38,8 @@ SETTLED = 0.25
 RETRIES = 4
 
 ROUNDINGS, SLIGHT = 3, 1.05
-"""Rounding sees some of the samples, and now and then overlooks what costs most: by how much the
-held-out error may rise before it is tried again with others, and how often at most."""
+"""Rounding sees some of the samples, and now and then overlooks what costs most: how often it is
+tried at most, with others each time, and by how much the held-out error may rise before that."""
 
 
 def train(

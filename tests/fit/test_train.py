@@ -118,7 +118,7 @@ def test_a_hopeless_fit_is_an_error() -> None:
 
 
 def test_the_same_seed_gives_the_same_weights_on_any_number_of_threads() -> None:
-    tasks = [sdf_task(), chart_task()]
+    tasks = [sdf_task(100), chart_task()]
     results = [
         fit_networks(tasks, seed, "cpu", threads, silent)
         for seed, threads in ((0, 1), (0, 2), (1, 2))
