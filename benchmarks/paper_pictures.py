@@ -75,12 +75,12 @@ def baselines(mesh: TexturedMesh, model: NispModel, seed: int, threads: int) -> 
     specs = {name: model.document.networks[name].spec for name in _UV}
     plain = replace(specs["uv"], conditioning="none", charts=0, embedding=0)
     as_large = _of_size(sum(spec.weight_count for spec in specs.values()))
-    colored = _coloured(sets.skin, surface), _coloured(sets.held_skin, surface)
+    colored = _coloured(sets.textured, surface), _coloured(sets.held_skin, surface)
     schedule = _schedule(model, sets)
     tasks = [
         Task(name, spec, *samples, target_error, target_error, schedule)
         for name, spec, samples in (
-            ("unconditioned", plain, (sets.skin, sets.held_skin)),
+            ("unconditioned", plain, (sets.textured, sets.held_skin)),
             ("colour", as_large, colored),
         )
     ]

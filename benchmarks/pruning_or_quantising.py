@@ -71,7 +71,7 @@ def networks(path: Path, steps: int) -> dict[str, Task]:
     sets, charts = training_sets(sampler), len(sampler.table)
     sdf = NetworkSpec((32,) * 4, 1)
     uv = NetworkSpec((24,) * 3, 2, conditioning="frames", charts=charts, embedding=4)
-    distance, skin = (sets.distance, sets.held_distance), (sets.skin, sets.held_skin)
+    distance, skin = (sets.distance, sets.held_distance), (sets.textured, sets.held_skin)
     schedule = Schedule(steps, BATCH)
     return {
         "sdf": Task("sdf", sdf, *distance, relative_distance_loss, distance_error, schedule),

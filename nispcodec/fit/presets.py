@@ -177,10 +177,11 @@ def paper_tasks(charts: int, sets: TrainingSets) -> list[Task]:
     """The published networks, losses, optimiser and rates (paper, sections 3.2 and 4.1)."""
     slow = Schedule(PAPER_STEPS, rate=1e-4, optimiser="adam")
     fast = Schedule(PAPER_STEPS, rate=5e-4, optimiser="adam")
+    samples = _samples(sets)
     return [
-        Task("sdf", paper_sdf(), *_distance(sets), distance_error, distance_error, slow),
-        Task("chart", paper_chart(charts), *_skin(sets), *_LOSSES["chart"], fast),
-        Task("uv", paper_uv(charts), *_skin(sets), *_LOSSES["uv"], fast),
+        Task("sdf", paper_sdf(), *samples["sdf"], distance_error, distance_error, slow),
+        Task("chart", paper_chart(charts), *samples["chart"], *_LOSSES["chart"], fast),
+        Task("uv", paper_uv(charts), *samples["uv"], *_LOSSES["uv"], fast),
     ]
 
 
@@ -203,8 +204,7 @@ def paper_uv(charts: int) -> NetworkSpec:
 
 def _task(sets: TrainingSets, name: str, spec: NetworkSpec, schedule: Schedule) -> Task:
     """A sine network's task, with its samples, loss and held-out measure."""
-    samples = _distance(sets) if name == "sdf" else _skin(sets)
-    return Task(name, spec, *samples, *_LOSSES[name], schedule)
+    return Task(name, spec, *_samples(sets)[name], *_LOSSES[name], schedule)
 
 
 _LOSSES = {
@@ -214,9 +214,10 @@ _LOSSES = {
 }
 
 
-def _distance(sets: TrainingSets) -> tuple[SampleSet, SampleSet]:
-    return sets.distance, sets.held_distance
-
-
-def _skin(sets: TrainingSets) -> tuple[SampleSet, SampleSet]:
-    return sets.skin, sets.held_skin
+def _samples(sets: TrainingSets) -> dict[str, tuple[SampleSet, SampleSet]]:
+    """What each network learns from and what it is judged by."""
+    return {
+        "sdf": (sets.distance, sets.held_distance),
+        "chart": (sets.skin, sets.held_skin),
+        "uv": (sets.textured, sets.held_skin),
+    }

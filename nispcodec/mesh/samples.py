@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from nispcodec.asset import FloatArray, TexturedMesh
 from nispcodec.document import ChartTable, Frame
 from nispcodec.mesh.charts import Charts, split_charts
+from nispcodec.mesh.detail import detail
 from nispcodec.mesh.distance import Closest, DistanceField
 from nispcodec.mesh.merge import Cover, merge_charts
 from nispcodec.mesh.mirror import folded, mirrors, twins, unlike
@@ -49,6 +50,7 @@ class Sampler:
     """
 
     def __init__(self, mesh: TexturedMesh, seed: int, gap: float = 0.0) -> None:
+        self._mesh = mesh
         self.frame = normalising_frame(mesh)
         self._random = np.random.default_rng(seed)
         self._corners = self.frame.to_normalised(mesh.corners)
@@ -114,6 +116,13 @@ class Sampler:
             chart=np.full(len(points), len(self.table) - 1, np.int32),
             uv=np.zeros_like(samples.uv),
         )
+
+    def detailed(self, samples: SampleSet, count: int) -> SampleSet:
+        """`count` samples again, the more the texture changes there; 0 where it never does."""
+        change = detail(self._mesh, self.table, samples)
+        if not change.any():
+            return samples[:0]
+        return samples[self._random.choice(len(samples), count, p=change / change.sum())]
 
     def label(self, points: FloatArray, signed: bool = True) -> SampleSet:
         """Distance, chart and UV at each point's closest surface point (paper, eq. 2)."""

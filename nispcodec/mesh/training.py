@@ -25,6 +25,7 @@ CUBE_COUNT = 80_000
 WIDE_COUNT = 40_000
 UNLIKE_COUNT = 80_000
 SKIN_COUNT = 250_000
+DETAIL_COUNT = 110_000
 MEMBRANE_COUNT = 12_000
 HELD_OUT_COUNT = 20_000
 PAPER_COUNT = 1_000_000
@@ -32,16 +33,20 @@ PAPER_COUNT = 1_000_000
 
 @dataclass(frozen=True)
 class TrainingSets:
-    """Samples to fit the SDF (`distance`) and the charts and UVs (`skin`), and held-out ones."""
+    """Samples to fit the SDF (`distance`), charts (`skin`) and UVs (`textured`); held-out ones."""
 
     distance: SampleSet
     skin: SampleSet
+    textured: SampleSet
     held_distance: SampleSet
     held_skin: SampleSet
 
 
 def training_sets(sampler: Sampler) -> TrainingSets:
-    """Near the surface for the most part; the whole cube for the sign far away."""
+    """Near the surface for the most part; the whole cube for the sign far away.
+
+    UVs learn from some points twice, where the texture has detail.
+    """
     distance = (
         sampler.near(NEAR_COUNT, 1 / BETA),
         sampler.near(TIGHT_COUNT, TIGHT),
@@ -49,11 +54,13 @@ def training_sets(sampler: Sampler) -> TrainingSets:
         sampler.near(WIDE_COUNT, WIDE),
         *sampler.unlike(UNLIKE_COUNT, UNLIKE),
     )
+    skin = SampleSet.joined(
+        (sampler.near(SKIN_COUNT, SKIN, signed=False), sampler.membrane(MEMBRANE_COUNT))
+    )
     return TrainingSets(
         distance=SampleSet.joined(distance),
-        skin=SampleSet.joined(
-            (sampler.near(SKIN_COUNT, SKIN, signed=False), sampler.membrane(MEMBRANE_COUNT))
-        ),
+        skin=skin,
+        textured=SampleSet.joined((skin, sampler.detailed(skin, DETAIL_COUNT))),
         held_distance=sampler.near(HELD_OUT_COUNT, SKIN),
         held_skin=sampler.surface(HELD_OUT_COUNT),
     )
@@ -63,4 +70,4 @@ def paper_training_sets(sampler: Sampler) -> TrainingSets:
     """The paper's: importance samples for all networks, judged on the surface (section 4.1)."""
     samples = sampler.importance(PAPER_COUNT)
     surface = sampler.surface(HELD_OUT_COUNT)
-    return TrainingSets(samples, samples, sampler.near(HELD_OUT_COUNT, SKIN), surface)
+    return TrainingSets(samples, samples, samples, sampler.near(HELD_OUT_COUNT, SKIN), surface)
