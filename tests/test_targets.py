@@ -29,7 +29,7 @@ def problem() -> Problem:
     samples, held_out = ball_samples(4000, 0), ball_samples(500, 1)
     held_out = replace(held_out, sdf=np.zeros_like(held_out.sdf))
     return Problem(
-        TrainingSets(samples, samples, samples, held_out, held_out), 1, False, 5.0, Mirrors(0, 0)
+        TrainingSets(samples, samples, held_out, held_out, samples), 1, False, 5.0, Mirrors(0, 0)
     )
 
 

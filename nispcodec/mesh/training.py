@@ -37,9 +37,9 @@ class TrainingSets:
 
     distance: SampleSet
     skin: SampleSet
-    textured: SampleSet
     held_distance: SampleSet
     held_skin: SampleSet
+    textured: SampleSet
 
 
 def training_sets(sampler: Sampler) -> TrainingSets:
@@ -60,9 +60,9 @@ def training_sets(sampler: Sampler) -> TrainingSets:
     return TrainingSets(
         distance=SampleSet.joined(distance),
         skin=skin,
-        textured=SampleSet.joined((skin, sampler.detailed(skin, DETAIL_COUNT))),
         held_distance=sampler.near(HELD_OUT_COUNT, SKIN),
         held_skin=sampler.surface(HELD_OUT_COUNT),
+        textured=SampleSet.joined((skin, sampler.detailed(skin, DETAIL_COUNT))),
     )
 
 
@@ -70,4 +70,4 @@ def paper_training_sets(sampler: Sampler) -> TrainingSets:
     """The paper's: importance samples for all networks, judged on the surface (section 4.1)."""
     samples = sampler.importance(PAPER_COUNT)
     surface = sampler.surface(HELD_OUT_COUNT)
-    return TrainingSets(samples, samples, samples, sampler.near(HELD_OUT_COUNT, SKIN), surface)
+    return TrainingSets(samples, samples, sampler.near(HELD_OUT_COUNT, SKIN), surface, samples)
