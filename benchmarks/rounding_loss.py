@@ -1,0 +1,91 @@
+"""What rounding the weights costs on the decoded mesh: beside the same fits, left as floats.
+
+    python -m benchmarks.rounding_loss --models DIR --assets ../shared/assets [--only spot]
+
+DIR holds NAME.nisp as `nisp encode` writes them here with this code. An encode with their preset
+and seed is the same up to the rounding. Results are kept asset by asset.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+from unittest.mock import patch
+
+import click
+
+import nispcodec
+from benchmarks.machine import commit
+from benchmarks.models import digest, keep, known, unmeasured
+from benchmarks.target import Record, Target
+from nispcodec.decode.model import NispModel
+from nispcodec.encoder import EncodeConfig
+from nispcodec.fit import parallel
+from nispcodec.fit.task import Task
+from nispcodec.mesh.load import load_mesh
+from nispcodec.metrics.compare import Reference
+from nispcodec.network import Network
+
+RESULTS = Path("benchmarks/results/rounding_loss.json")
+PLACES = {
+    "distance": ("geometry", "larger", "mean"),
+    "uv median": ("uv", "larger", "median"),
+    "uv mean": ("uv", "larger", "mean"),
+}
+TARGETS = [Target(f"{name}: after / before", ("ratios", name), 1.15) for name in PLACES]
+
+
+@contextmanager
+def floats() -> Iterator[None]:
+    """Encodes within it leave their weights as they were fitted."""
+    rounded = parallel.fit_networks
+
+    def fit(tasks: list[Task], *how: Any) -> dict[str, Network]:
+        return rounded([replace(task, rounding=None) for task in tasks], *how)
+
+    with patch.object(parallel, "fit_networks", fit):
+        yield
+
+
+def errors(reference: Reference, model: NispModel) -> dict[str, float]:
+    """The errors of `PLACES` of the decoded mesh."""
+    report = reference.compare(model.to_mesh(), model)
+    found = {name: Target(name, place, 0).measured(report) for name, place in PLACES.items()}
+    return {**found, "charts": Target("charts", ("charts", "accuracy"), 0).measured(report)}
+
+
+def measure(path: Path, source: Path) -> Record:
+    """Both models of one asset, and how much worse the rounded one is."""
+    mesh, rounded = load_mesh(source), nispcodec.load(path)
+    info = rounded.document.info
+    reference = Reference.of(mesh)
+    with floats():
+        before = nispcodec.encode(mesh, EncodeConfig(str(info["preset"]), int(info["seed"])))
+    found = {"before": errors(reference, before), "after": errors(reference, rounded)}
+    ratios = {name: found["after"][name] / found["before"][name] for name in PLACES}
+    return {"commit": commit(), "model": digest(path), **found, "ratios": ratios}
+
+
+@click.command()
+@click.option("--models", type=click.Path(path_type=Path, exists=True), required=True)
+@click.option("--assets", type=click.Path(path_type=Path, exists=True), required=True)
+@click.option("--only", multiple=True, help="An asset; may be repeated.")
+@click.option("-o", "--output", type=click.Path(path_type=Path), default=RESULTS, show_default=True)
+def main(models: Path, assets: Path, only: tuple[str, ...], output: Path) -> None:
+    """Measure every NAME.nisp in MODELS and print asked against measured."""
+    records = known(output)
+    for path in unmeasured(models, only, records):
+        records[path.stem] = measure(path, assets / path.stem / f"{path.stem}.obj")
+        keep(output, records)
+    for name, record in sorted(records.items()):
+        charts = (record[when]["charts"] for when in ("before", "after"))
+        click.echo("{:<18}charts right: {:.4f} before, {:.4f} after".format(name, *charts))
+        for target in TARGETS:
+            click.echo(target.line(name, record))
+
+
+if __name__ == "__main__":
+    main()
