@@ -20,8 +20,9 @@ from nispcodec.network import Network
 from nispcodec.render.fragments import Floats, Indices
 
 COARSE, HALVINGS = 32, 2
-# Noise is looked for on a surface of this resolution.
-NOISE_RESOLUTION = 96
+# Noise is looked for on a surface as fine as meshes of thin parts are: on coarse ones these break
+# into pieces that look like noise.
+NOISE_RESOLUTION = 512
 SOME = 4096
 HALVES = np.indices((2, 2, 2)).reshape(3, -1).T
 # Interpolation may be off elsewhere in a cell by this many times what it is off in the middle.
