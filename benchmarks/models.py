@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from functools import reduce
 from hashlib import sha256
 from pathlib import Path
 
@@ -12,6 +13,20 @@ import click
 from benchmarks.machine import machine, versions
 from benchmarks.target import Record
 from nispcodec.output import write_atomic
+
+Command = Callable[..., None]
+
+
+def models_options(results: Path) -> Callable[[Command], Command]:
+    """The options `models`, `assets`, `only` and `output` of a command, which keeps `results`."""
+    folder = click.Path(path_type=Path, exists=True)
+    options = (
+        click.option("--models", type=folder, required=True, help="A folder of NAME.nisp."),
+        click.option("--assets", type=folder, required=True, help="A folder of NAME/NAME.obj."),
+        click.option("--only", multiple=True, help="An asset; may be repeated."),
+        click.option("-o", "--output", type=Path, default=results, show_default=True),
+    )
+    return lambda command: reduce(lambda made, option: option(made), reversed(options), command)
 
 
 def digest(path: Path) -> str:

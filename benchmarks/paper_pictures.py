@@ -22,7 +22,7 @@ from torch import Tensor
 
 import nispcodec
 from benchmarks.machine import commit
-from benchmarks.models import digest, keep, known, unmeasured
+from benchmarks.models import digest, keep, known, models_options, unmeasured
 from benchmarks.target import Record, Target
 from nispcodec.asset import TexturedMesh
 from nispcodec.decode.evaluate import evaluate
@@ -219,12 +219,9 @@ def measure(path: Path, source: Path, seed: int, threads: int) -> tuple[Record, 
 
 
 @click.command()
-@click.option("--models", type=click.Path(path_type=Path, exists=True), required=True)
-@click.option("--assets", type=click.Path(path_type=Path, exists=True), required=True)
-@click.option("--only", multiple=True, help="An asset; may be repeated.")
+@models_options(RESULTS)
 @click.option("--seed", type=click.IntRange(0), default=0, show_default=True)
 @click.option("--threads", type=click.IntRange(1), default=2, show_default=True)
-@click.option("-o", "--output", type=click.Path(path_type=Path), default=RESULTS, show_default=True)
 def main(
     models: Path, assets: Path, only: tuple[str, ...], seed: int, threads: int, output: Path
 ) -> None:

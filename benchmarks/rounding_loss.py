@@ -19,7 +19,7 @@ import click
 
 import nispcodec
 from benchmarks.machine import commit
-from benchmarks.models import digest, keep, known, unmeasured
+from benchmarks.models import digest, keep, known, models_options, unmeasured
 from benchmarks.target import Record, Target
 from nispcodec.decode.model import NispModel
 from nispcodec.encoder import EncodeConfig
@@ -70,10 +70,7 @@ def measure(path: Path, source: Path) -> Record:
 
 
 @click.command()
-@click.option("--models", type=click.Path(path_type=Path, exists=True), required=True)
-@click.option("--assets", type=click.Path(path_type=Path, exists=True), required=True)
-@click.option("--only", multiple=True, help="An asset; may be repeated.")
-@click.option("-o", "--output", type=click.Path(path_type=Path), default=RESULTS, show_default=True)
+@models_options(RESULTS)
 def main(models: Path, assets: Path, only: tuple[str, ...], output: Path) -> None:
     """Measure every NAME.nisp in MODELS and print asked against measured."""
     records = known(output)
