@@ -15,7 +15,10 @@ PRUNE = 8
 
 
 def simplified(corners: Corners, faces: int) -> Corners:
-    """About `faces` triangles, as few as can be had; vertices are a subset of the given ones."""
+    """About `faces` triangles, as few as can be had; vertices are a subset of the given ones.
+
+    Raises ValueError when nothing is left: bodies smaller than the error are dropped.
+    """
     from meshoptimizer import simplify_with_attributes
 
     _declare()
@@ -32,6 +35,8 @@ def simplified(corners: Corners, faces: int) -> Corners:
         target_error=1.0,
         options=PRUNE,
     )
+    if count == 0:
+        raise ValueError(f"expected about {faces} of {len(corners.faces)} faces, found none left")
     return corners.only(indices[:count])
 
 

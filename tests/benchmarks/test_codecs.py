@@ -104,6 +104,13 @@ def test_a_quick_run_has_fewer_settings(name: str, source: Source) -> None:
     assert all(setting in full for setting in quick)
 
 
+def test_simplified_to_nothing_is_an_error_that_says_so(source: Source) -> None:
+    pytest.importorskip("meshoptimizer", reason="extra `simplify`")
+    setting = {"surface": "all", "kept": 0.0, "qp": 11, "qt": 10}
+    with pytest.raises(ValueError, match="found none left"):
+        codec("simplified_draco").encode(source, setting)
+
+
 def test_a_decoded_model_shows_the_source_s_materials(source: Source) -> None:
     decoded = codec("nisp").decode(pack(document()), source)
     assert decoded.materials == source.mesh.materials
