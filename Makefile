@@ -1,7 +1,7 @@
 # make demo: set up, encode a sample asset, decode it, show sizes and errors
 # make test: set up, then everything that CI runs
 # make fuzz: RUNS files of a coverage-guided fuzzer against the parser
-# make bench: every codec on the assets in ASSETS, into build/bench/report.html; some three hours, goes on where it stopped
+# make bench: every codec on the assets in ASSETS, into build/bench/report.html; one to three hours, goes on where it stopped
 
 PYTHON ?= python3
 ASSETS ?= ../shared/assets
