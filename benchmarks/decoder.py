@@ -14,6 +14,7 @@ import sys
 import time
 from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 from itertools import pairwise
 from pathlib import Path
 
@@ -21,8 +22,8 @@ import click
 import numpy as np
 from numpy.typing import NDArray
 
-from benchmarks.machine import commit
-from benchmarks.models import digest, keep, known, models_options, unmeasured
+from benchmarks.main_job import PRECISE
+from benchmarks.models import measured, models_options
 from benchmarks.soundness import counted, two_chart_triangles
 from benchmarks.target import Record, Target
 from nispcodec.asset import TexturedMesh
@@ -50,7 +51,6 @@ assert "torch" not in sys.modules
 """
 
 RESULTS = Path("benchmarks/results/decoder.json")
-PRECISE = ("spot", "food_apple_01", "chess_king", "tea_set_01")
 
 QUERIES = [
     Target("UV queries a second", ("uv_points_per_second",), 5e5, at_least=True),
@@ -215,8 +215,6 @@ def measured_asset(model: Path, source: Path, wide: Record) -> Record:
     queries = query_speed(document.sdf, document.chart, document.uv)
     speeds = {name: f"{name}_points_per_second" for name in ("sdf", "uv")}
     return {
-        "commit": commit(),
-        "model": digest(model),
         "queries": queries,
         "times_8x64": {
             name: round(queries[speed] / wide[speed], 2)
@@ -236,14 +234,11 @@ def main(models: Path, assets: Path, only: tuple[str, ...], output: Path) -> Non
     peak, queries = matrix_peak(), paper_queries()
     plain = queries["plain"]
     plain["share_of_peak"] = round(plain["sdf_flops"] / peak, 3)
-    records = known(output)
-    for path in unmeasured(models, only, records):
-        source = assets / path.stem / f"{path.stem}.obj"
-        records[path.stem] = measured_asset(path, source, plain)
-        keep(output, records, matrix_product_flops=round(peak), paper=PAPER, queries_8x64=queries)
     for target in QUERIES:
         click.echo(target.line("8 x 64", plain))
-    for name, record in sorted(records.items()):
+    more = {"matrix_product_flops": round(peak), "paper": PAPER, "queries_8x64": queries}
+    measure = partial(measured_asset, wide=plain)
+    for name, record in measured(models, assets, only, output, measure, **more).items():
         for target in targets(name):
             click.echo(target.line(name, record))
 

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from functools import reduce
 from hashlib import sha256
 from pathlib import Path
 
 import click
 
-from benchmarks.machine import machine, versions
+from benchmarks.machine import commit, machine, versions
 from benchmarks.target import Record
 from nispcodec.output import write_atomic
 
@@ -29,28 +29,28 @@ def models_options(results: Path) -> Callable[[Command], Command]:
     return lambda command: reduce(lambda made, option: option(made), reversed(options), command)
 
 
-def digest(path: Path) -> str:
-    """What tells one model's bytes from another's; the "model" of a record."""
-    return sha256(path.read_bytes()).hexdigest()
+def measured(
+    models: Path,
+    assets: Path,
+    only: tuple[str, ...],
+    output: Path,
+    measure: Callable[[Path, Path], Record],
+    **more: object,
+) -> dict[str, Record]:
+    """The records of all models ever measured into `output`, by the sorted names of assets.
 
-
-def known(output: Path) -> Record:
-    """The records so far, by the names of assets."""
+    Those asked for that have none of these very bytes are measured, from the model's path and the
+    original's, told one by one and kept at once, with the machine and whatever else belongs to it.
+    """
     records: Record = json.loads(output.read_text())["assets"] if output.exists() else {}
-    return records
-
-
-def unmeasured(models: Path, only: tuple[str, ...], records: Record) -> Iterator[Path]:
-    """The models to measure, told one by one: of those asked for, what has no record yet."""
     for path in sorted(models.glob("*.nisp")):
-        wanted = not only or path.stem in only
-        if wanted and records.get(path.stem, {}).get("model") != digest(path):
-            click.echo(f"{path.stem} ...", err=True)
-            yield path
-
-
-def keep(output: Path, records: Record, **more: object) -> None:
-    """Write all records, with where they were measured and whatever else belongs to them."""
-    output.parent.mkdir(parents=True, exist_ok=True)
-    everything = {"machine": machine(), "versions": versions(), **more, "assets": records}
-    write_atomic(output, json.dumps(everything, indent=1).encode() + b"\n")
+        name, bytes_now = path.stem, sha256(path.read_bytes()).hexdigest()
+        if (only and name not in only) or records.get(name, {}).get("model") == bytes_now:
+            continue
+        click.echo(f"{name} ...", err=True)
+        found = measure(path, assets / name / f"{name}.obj")
+        records[name] = {"commit": commit(), "model": bytes_now, **found}
+        everything = {"machine": machine(), "versions": versions(), **more, "assets": records}
+        output.parent.mkdir(parents=True, exist_ok=True)
+        write_atomic(output, json.dumps(everything, indent=1).encode() + b"\n")
+    return dict(sorted(records.items()))

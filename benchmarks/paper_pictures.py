@@ -21,8 +21,7 @@ import numpy as np
 from torch import Tensor
 
 import nispcodec
-from benchmarks.machine import commit
-from benchmarks.models import digest, keep, known, models_options, unmeasured
+from benchmarks.models import measured, models_options
 from benchmarks.target import Record, Target
 from nispcodec.asset import TexturedMesh
 from nispcodec.decode.evaluate import evaluate
@@ -208,8 +207,6 @@ def measure(path: Path, source: Path, seed: int, threads: int) -> tuple[Record, 
     numbers, drawn = compared(mesh, model, networks)
     ours = numbers["ours"]["color_psnr"]
     record = {
-        "commit": commit(),
-        "model": digest(path),
         "charts": len(model.document.charts),
         "weights": {name: each.spec.weight_count for name, each in networks.items()},
         "gains": {name: ours - numbers[name]["color_psnr"] for name in networks},
@@ -226,15 +223,15 @@ def main(
     models: Path, assets: Path, only: tuple[str, ...], seed: int, threads: int, output: Path
 ) -> None:
     """Compare every NAME.nisp in MODELS and print asked against measured."""
-    records = known(output)
     output.parent.mkdir(parents=True, exist_ok=True)
-    for path in unmeasured(models, only, records):
-        name = path.stem
-        records[name], drawn = measure(path, assets / name / f"{name}.obj", seed, threads)
-        picture = output.with_name(f"{output.stem}_{name}.webp")
+
+    def measure_and_draw(path: Path, source: Path) -> Record:
+        record, drawn = measure(path, source, seed, threads)
+        picture = output.with_name(f"{output.stem}_{path.stem}.webp")
         write_atomic(picture, image_bytes([drawn], ".webp"))
-        keep(output, records)
-    for name, record in sorted(records.items()):
+        return record
+
+    for name, record in measured(models, assets, only, output, measure_and_draw).items():
         click.echo(_told_of(name, record))
 
 

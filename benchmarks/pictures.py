@@ -17,9 +17,8 @@ import click
 import numpy as np
 
 import nispcodec
-from benchmarks.machine import commit
 from benchmarks.measure import run
-from benchmarks.models import digest, keep, known, models_options, unmeasured
+from benchmarks.models import measured, models_options
 from benchmarks.target import Record, Target
 from nispcodec.decode.model import NispModel
 from nispcodec.mesh.load import load_mesh
@@ -125,8 +124,6 @@ def measure(path: Path, source: Path) -> Record:
     field = scene_of(model)
     decoded = scene_of(model.to_mesh(RESOLUTION), model.document.frame)
     return {
-        "commit": commit(),
-        "model": digest(path),
         "pictures": likeness(original, field),
         "silhouette": silhouette(original, decoded, field),
         "cost": cost(path),
@@ -137,11 +134,7 @@ def measure(path: Path, source: Path) -> Record:
 @models_options(RESULTS)
 def main(models: Path, assets: Path, only: tuple[str, ...], output: Path) -> None:
     """Measure every NAME.nisp in MODELS and print asked against measured."""
-    records = known(output)
-    for path in unmeasured(models, only, records):
-        records[path.stem] = measure(path, assets / path.stem / f"{path.stem}.obj")
-        keep(output, records, paper=PAPER)
-    for name, record in sorted(records.items()):
+    for name, record in measured(models, assets, only, output, measure, paper=PAPER).items():
         for part in ("pictures", "silhouette"):
             values = ", ".join(f"{key} {value:.4g}" for key, value in record[part].items())
             click.echo(f"{name:<18}{part}: {values}")

@@ -18,8 +18,7 @@ from unittest.mock import patch
 import click
 
 import nispcodec
-from benchmarks.machine import commit
-from benchmarks.models import digest, keep, known, models_options, unmeasured
+from benchmarks.models import measured, models_options
 from benchmarks.target import Record, Target
 from nispcodec.decode.model import NispModel
 from nispcodec.encoder import EncodeConfig
@@ -66,18 +65,14 @@ def measure(path: Path, source: Path) -> Record:
         before = nispcodec.encode(mesh, EncodeConfig(str(info["preset"]), int(info["seed"])))
     found = {"before": errors(reference, before), "after": errors(reference, rounded)}
     ratios = {name: found["after"][name] / found["before"][name] for name in PLACES}
-    return {"commit": commit(), "model": digest(path), **found, "ratios": ratios}
+    return {**found, "ratios": ratios}
 
 
 @click.command()
 @models_options(RESULTS)
 def main(models: Path, assets: Path, only: tuple[str, ...], output: Path) -> None:
     """Measure every NAME.nisp in MODELS and print asked against measured."""
-    records = known(output)
-    for path in unmeasured(models, only, records):
-        records[path.stem] = measure(path, assets / path.stem / f"{path.stem}.obj")
-        keep(output, records)
-    for name, record in sorted(records.items()):
+    for name, record in measured(models, assets, only, output, measure).items():
         charts = (record[when]["charts"] for when in ("before", "after"))
         click.echo("{:<18}charts right: {:.4f} before, {:.4f} after".format(name, *charts))
         for target in TARGETS:

@@ -26,7 +26,7 @@ class FieldScene:
 
     def __init__(self, model: NispModel) -> None:
         self.model = model
-        self.space = bounding_space(model.document.sdf)
+        self.space = bounding_space(model.document.sdf, model.document.shell)
         self._chart_materials = self._materials_of_charts()
 
     @property

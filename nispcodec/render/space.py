@@ -20,9 +20,6 @@ from nispcodec.network import Network
 from nispcodec.render.fragments import Floats, Indices
 
 COARSE, HALVINGS = 32, 2
-# Noise is looked for on a surface as fine as meshes of thin parts are: on coarse ones these break
-# into pieces that look like noise.
-NOISE_RESOLUTION = 512
 SOME = 4096
 HALVES = np.indices((2, 2, 2)).reshape(3, -1).T
 # Interpolation may be off elsewhere in a cell by this many times what it is off in the middle.
@@ -71,14 +68,18 @@ def _between(grid: Floats, place: Floats) -> Floats:
     return values
 
 
-def bounding_space(network: Network) -> Space:
-    """What can be known beforehand of where the surface of an SDF network is not."""
+def bounding_space(network: Network, shell: float = 0.0) -> Space:
+    """What can be known beforehand of where the surface of an SDF network is not.
+
+    `shell` is the document's. Noise is what the mesh of a plain decode has none of: on coarser ones
+    thin parts break into pieces that look like noise.
+    """
     cells, count = np.indices((COARSE,) * 3).reshape(3, -1).T, COARSE
     middles, cells = _crossed(network, cells, count)
     for _ in range(HALVINGS):
         count *= 2
         middles, cells = _crossed(network, (2 * cells[:, None] + HALVES).reshape(-1, 3), count)
-    real = _is_surface(network, cells, count)
+    real = _is_surface(network, shell, cells, count)
     return _remembered(network, cells[real], middles[real], count)
 
 
@@ -139,7 +140,7 @@ def _slope(network: Network, points: Floats) -> float:
     return float(1.1 * np.percentile(slopes, 99)) if len(slopes) else 1.0
 
 
-def _is_surface(network: Network, cells: Indices, count: int) -> NDArray[np.bool_]:
+def _is_surface(network: Network, shell: float, cells: Indices, count: int) -> NDArray[np.bool_]:
     """Which cells are inside the unit ball and hold no surface that is recognised as noise."""
     centres = _centres(cells, count)
     reach = 2 * LIMIT / count
@@ -152,8 +153,9 @@ def _is_surface(network: Network, cells: Indices, count: int) -> NDArray[np.bool
     from scipy.spatial import KDTree
 
     from nispcodec.decode.components import spurious
+    from nispcodec.decode.meshing import default_resolution
 
-    surface = extract(network, NOISE_RESOLUTION)
+    surface = extract(network, default_resolution(network, shell))
     unwanted, labels = spurious(network, surface)
     if not unwanted.any():
         return inside

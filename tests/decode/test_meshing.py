@@ -36,15 +36,15 @@ def test_thin_walls_are_told_though_no_grid_point_lies_inside(
 
 
 def test_default_resolution_follows_the_walls() -> None:
-    assert default_resolution(tiny.document(plate(0.003))) == MOST
-    assert default_resolution(tiny.document(tiny.octahedron())) == LEAST
+    assert default_resolution(plate(0.003), 0.0) == MOST
+    assert default_resolution(tiny.octahedron(), 0.0) == LEAST
 
 
 @pytest.mark.parametrize(("shell", "expected"), [(0.05, LEAST), (0.004, 510), (1e-4, 2048)])
 def test_sheets_get_a_cell_for_half_their_thickness(shell: float, expected: int) -> None:
     document = replace(tiny.document(tiny.octahedron()), shell=shell)
-    assert default_resolution(document) == expected
+    assert default_resolution(document.sdf, document.shell) == expected
 
 
 def test_no_surface_at_all_has_a_default_too() -> None:
-    assert default_resolution(tiny.document(tiny.octahedron(-1))) == LEAST
+    assert default_resolution(tiny.octahedron(-1), 0.0) == LEAST
