@@ -1,8 +1,8 @@
 """From the SDF network to a triangle mesh, with work that grows with the surface.
 
 Blocks of the cube are kept, coarse to fine, while the field says that the surface may pass through
-them; the field is then sampled on the grid points of the kept blocks only, polygonised, and the
-vertices are moved onto the zero set.
+them; the field is then sampled on the grid points of the kept blocks only, and of those that the
+surface goes on into; it is polygonised, and the vertices are moved onto the zero set.
 """
 
 from __future__ import annotations
@@ -33,6 +33,7 @@ STRIDES = np.array([(BLOCK + 1) ** 2, BLOCK + 1, 1])
 
 Ids = NDArray[np.int64]
 Floats = NDArray[np.float32]
+Numbering = Callable[[Ids], NDArray[np.int32]]
 
 
 @dataclass(frozen=True)
@@ -51,8 +52,8 @@ def extract(network: Network, resolution: int) -> Surface:
     eighth at most, so that blocks halve evenly and none reaches out of the cube.
     """
     root, levels, cell = _grid(resolution)
-    blocks = _surface_blocks(network, root, levels, cell)
-    values, points = _block_values(network, blocks, root * 2**levels, cell)
+    kept = _surface_blocks(network, root, levels, cell)
+    blocks, values, points = _sampled(network, kept, root * 2**levels, cell)
     places, axes, faces = _polygons(values, points)
     crossings = _crossings(blocks, values.ravel(), places, axes, cell)
     return Surface(onto_surface(network, crossings, cell / 2, NEWTON_STEPS), faces, cell)
@@ -110,16 +111,48 @@ def _steepness(network: Network, points: Floats) -> float:
     return float(1.25 * np.percentile(slopes, 99, method="higher")) if len(slopes) else 1.0
 
 
-def _block_values(
+def _sampled(
     network: Network, blocks: Ids, across: int, cell: float
+) -> tuple[Ids, Floats, NDArray[np.int32]]:
+    """The blocks and their `_block_values`, with the blocks that were left out by mistake.
+
+    Where the field is steeper than measured its surface may leave the kept blocks: it would end
+    there in a hole.
+    """
+    own = _own_values(network, blocks, cell)
+    while True:
+        number_of = _numbered(blocks, across)
+        values, points = _block_values(network, blocks, own, number_of, cell)
+        more = _left_out(blocks, values, number_of, across)
+        if len(more) == 0:
+            return blocks, values, points
+        blocks = np.concatenate([blocks, more])
+        own = np.concatenate([own, _own_values(network, more, cell)])
+
+
+def _left_out(blocks: Ids, values: Floats, number_of: Numbering, across: int) -> Ids:
+    """Blocks (b, 3) of the cube that are not there, and lie behind a face that is crossed."""
+    inside = values < 0
+    beyond = []
+    for axis in range(3):
+        for side, step in ((0, -1), (BLOCK, 1)):
+            face = inside.take(side, axis=axis + 1).reshape(len(blocks), (BLOCK + 1) ** 2)
+            neighbours = blocks[face.any(axis=1) & ~face.all(axis=1)]
+            neighbours[:, axis] += step
+            place = neighbours[:, axis]
+            beyond.append(neighbours[(place >= 0) & (place < across)])
+    wanted = np.concatenate(beyond)
+    return np.unique(wanted[number_of(wanted) < 0], axis=0)
+
+
+def _block_values(
+    network: Network, blocks: Ids, own: Floats, number_of: Numbering, cell: float
 ) -> tuple[Floats, NDArray[np.int32]]:
     """The field at each block's (BLOCK + 1)^3 grid points, and their numbers: (b, 3, 3, 3) each.
 
     A block owns its BLOCK^3 lower points and takes the others from its upper neighbours, so that a
     point shared by several blocks has one value, bit for bit, or the surface would crack.
     """
-    number_of = _numbered(blocks, across)
-    own = _own_values(network, blocks, cell)
     own_points = np.arange(own.size, dtype=np.int32).reshape(own.shape)
     values = np.empty((len(blocks), *(BLOCK + 1,) * 3), np.float32)
     points = np.empty(values.shape, np.int32)
@@ -138,7 +171,7 @@ def _block_values(
     return values, points
 
 
-def _numbered(blocks: Ids, across: int) -> Callable[[Ids], NDArray[np.int32]]:
+def _numbered(blocks: Ids, across: int) -> Numbering:
     """What gives the numbers of blocks by their coordinates, -1 where none was kept.
 
     A table of the cube holds octets of blocks: one of single blocks takes gigabytes at 2048 cells.

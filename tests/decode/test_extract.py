@@ -10,7 +10,7 @@ from nispcodec.decode.evaluate import evaluate
 from nispcodec.decode.extract import LIMIT, Surface, extract
 from nispcodec.network import Network
 from tests import tiny
-from tests.decode.surfaces import areas, assert_sound
+from tests.decode.surfaces import areas, assert_closed, assert_sound
 
 
 @pytest.fixture(scope="module")
@@ -78,6 +78,14 @@ def dented(depth: float, width: float) -> Network:
     last = np.array([[1.0, -depth / width]])
     layers = [(first, bias), (second, np.array([0.0, width])), (last, [-0.5 / np.sqrt(3)])]
     return tiny.relu_network([(np.asarray(w), np.asarray(b)) for w, b in layers])
+
+
+@pytest.mark.parametrize("resolution", [64, 128])
+@pytest.mark.parametrize("depth", [0.5, 2.0])
+def test_where_the_field_is_steeper_than_elsewhere_the_surface_is_closed_too(
+    depth: float, resolution: int
+) -> None:
+    assert_closed(extract(dented(depth, width=0.2), resolution).faces)
 
 
 def test_noise_is_told_from_surface() -> None:
