@@ -14,7 +14,8 @@ import numpy as np
 
 from nispcodec.decode.components import without_noise
 from nispcodec.decode.evaluate import evaluate
-from nispcodec.decode.extract import LIMIT, extract
+from nispcodec.decode.extract import extract
+from nispcodec.decode.grid import LIMIT
 from nispcodec.decode.meshing import default_resolution, textured_mesh
 from nispcodec.document import Document
 from nispcodec.format import unpack

@@ -16,7 +16,8 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
 from nispcodec.decode.evaluate import gradient
-from nispcodec.decode.extract import LIMIT, OUTSIDE, Surface
+from nispcodec.decode.extract import OUTSIDE, Surface
+from nispcodec.decode.grid import LIMIT
 from nispcodec.network import Network
 
 # Slopes are relative to the whole surface's. Noise between the samples was seen at 3 to 7. Flat

@@ -7,33 +7,25 @@ surface goes on into; it is polygonised, and the vertices are moved onto the zer
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from nispcodec.decode.evaluate import evaluate, gradient
+from nispcodec.decode.grid import BLOCK, LIMIT, Floats, Grid, Ids, Numbers
 from nispcodec.decode.marching import CORNERS, EDGES, polygonise
 from nispcodec.decode.newton import onto_surface
 from nispcodec.network import Network
 
-LIMIT = 1.02
 # Nothing of the asset is outside of this ball.
 OUTSIDE = 1.01
-BLOCK = 2
 ROOT = 32
 NEWTON_STEPS = 2
 # Vertices keep this share of a cell from grid points, where several would coincide.
 CLEARANCE = 0.01
-# Blocks whose points are evaluated at a time, which bounds memory.
-TOGETHER = 4096
 # From a grid point of a block to the next along each axis.
 STRIDES = np.array([(BLOCK + 1) ** 2, BLOCK + 1, 1])
-
-Ids = NDArray[np.int64]
-Floats = NDArray[np.float32]
-Numbering = Callable[[Ids], NDArray[np.int32]]
 
 
 @dataclass(frozen=True)
@@ -41,7 +33,7 @@ class Surface:
     """positions (n, 3) float32, normalised frame; faces (m, 3) int32; cell: the grid's spacing."""
 
     positions: Floats
-    faces: NDArray[np.int32]
+    faces: Numbers
     cell: float
 
 
@@ -53,7 +45,7 @@ def extract(network: Network, resolution: int) -> Surface:
     """
     root, levels, cell = _grid(resolution)
     kept = _surface_blocks(network, root, levels, cell)
-    blocks, values, points = _sampled(network, kept, root * 2**levels, cell)
+    blocks, values, points = _sampled(Grid(network, root * 2**levels, cell), kept)
     places, axes, faces = _polygons(values, points)
     crossings = _crossings(blocks, values.ravel(), places, axes, cell)
     return Surface(onto_surface(network, crossings, cell / 2, NEWTON_STEPS), faces, cell)
@@ -78,8 +70,10 @@ def _surface_blocks(network: Network, root: int, levels: int, cell: float) -> Id
     """Integer coordinates (b, 3) of the blocks of BLOCK^3 cells that may hold surface.
 
     A block is halved and kept while the field at its centre is no larger than it may become over
-    half the block's diagonal. How fast it may grow is measured anew among the blocks of each level:
-    far from the surface a fitted field is steeper than near it.
+    half the block's diagonal; at the end, over half its edge: a surface that passes between the
+    centres of two blocks is that close to one of them, and from there it is followed. How fast the
+    field may grow is measured anew among the blocks of each level: far from the surface a fitted
+    field is steeper than near it.
     """
     blocks = _lattice(root)
     for level in range(levels, -1, -1):
@@ -88,7 +82,7 @@ def _surface_blocks(network: Network, root: int, levels: int, cell: float) -> Id
         if level == levels:
             bound = _steepness(network, centres)
         distance = np.abs(evaluate(network, centres)[:, 0])
-        near = distance <= bound * size * np.sqrt(3) / 2
+        near = distance <= bound * size * (np.sqrt(3) if level else 1) / 2
         blocks = blocks[near]
         if level:
             bound = _steepness(network, centres[near])
@@ -111,121 +105,44 @@ def _steepness(network: Network, points: Floats) -> float:
     return float(1.25 * np.percentile(slopes, 99, method="higher")) if len(slopes) else 1.0
 
 
-def _sampled(
-    network: Network, blocks: Ids, across: int, cell: float
-) -> tuple[Ids, Floats, NDArray[np.int32]]:
-    """The blocks and their `_block_values`, with the blocks that were left out by mistake.
+def _sampled(grid: Grid, blocks: Ids) -> tuple[Ids, Floats, Numbers]:
+    """The blocks and all that the surface goes on into; what `Grid.sampled` says of them.
 
-    Where the field is steeper than measured its surface may leave the kept blocks: it would end
-    there in a hole.
+    Where it left them it would end in a hole.
     """
-    own = _own_values(network, blocks, cell)
-    while True:
-        number_of = _numbered(blocks, across)
-        values, points = _block_values(network, blocks, own, number_of, cell)
-        more = _left_out(blocks, values, number_of, across)
-        if len(more) == 0:
-            return blocks, values, points
+    values, points = grid.sampled(blocks)
+    more = _behind(grid, blocks, values)
+    while len(more):
+        more_values, more_points = grid.sampled(more)
         blocks = np.concatenate([blocks, more])
-        own = np.concatenate([own, _own_values(network, more, cell)])
+        values = np.concatenate([values, more_values])
+        points = np.concatenate([points, more_points])
+        more = _behind(grid, more, more_values)
+    return blocks, values, points
 
 
-def _left_out(blocks: Ids, values: Floats, number_of: Numbering, across: int) -> Ids:
-    """Blocks (b, 3) of the cube that are not there, and lie behind a face that is crossed."""
-    inside = values < 0
+def _behind(grid: Grid, blocks: Ids, values: Floats) -> Ids:
+    """Blocks (b, 3) of the cube that were not sampled, and lie behind a face that is crossed."""
+    inside = _bits((values < 0).reshape(-1, (BLOCK + 1) ** 3))
+    corners = _lattice(BLOCK + 1)
     beyond = []
     for axis in range(3):
         for side, step in ((0, -1), (BLOCK, 1)):
-            face = inside.take(side, axis=axis + 1).reshape(len(blocks), (BLOCK + 1) ** 2)
-            neighbours = blocks[face.any(axis=1) & ~face.all(axis=1)]
+            face = _bits(corners[:, axis] == side)
+            neighbours = blocks[(inside & face != 0) & (inside & face != face)]
             neighbours[:, axis] += step
             place = neighbours[:, axis]
-            beyond.append(neighbours[(place >= 0) & (place < across)])
+            beyond.append(neighbours[(place >= 0) & (place < grid.across)])
     wanted = np.concatenate(beyond)
-    return np.unique(wanted[number_of(wanted) < 0], axis=0)
+    return np.unique(wanted[~grid.has_sampled(wanted)], axis=0)
 
 
-def _block_values(
-    network: Network, blocks: Ids, own: Floats, number_of: Numbering, cell: float
-) -> tuple[Floats, NDArray[np.int32]]:
-    """The field at each block's (BLOCK + 1)^3 grid points, and their numbers: (b, 3, 3, 3) each.
-
-    A block owns its BLOCK^3 lower points and takes the others from its upper neighbours, so that a
-    point shared by several blocks has one value, bit for bit, or the surface would crack.
-    """
-    own_points = np.arange(own.size, dtype=np.int32).reshape(own.shape)
-    values = np.empty((len(blocks), *(BLOCK + 1,) * 3), np.float32)
-    points = np.empty(values.shape, np.int32)
-    values[:, :BLOCK, :BLOCK, :BLOCK] = own
-    points[:, :BLOCK, :BLOCK, :BLOCK] = own_points
-    absent = np.zeros(values.shape, np.bool_)
-    for corner in CORNERS[1:]:
-        owners = number_of(blocks + corner)
-        rim = (slice(None), *(slice(BLOCK, None) if c else slice(BLOCK) for c in corner))
-        theirs = (slice(None), *(slice(1) if c else slice(None) for c in corner))
-        values[rim] = own[theirs][owners]
-        points[rim] = own_points[theirs][owners]
-        absent[rim] = (owners < 0)[:, None, None, None]
-    values[absent], rim_points = _rim_values(network, blocks, absent, cell)
-    points[absent] = own.size + rim_points
-    return values, points
+def _bits(flags: NDArray[np.bool_]) -> NDArray[np.uint32]:
+    """The (BLOCK + 1)^3 flags of each block (..., 27) as one number."""
+    return np.packbits(flags, axis=-1).view(">u4")[..., 0]
 
 
-def _numbered(blocks: Ids, across: int) -> Numbering:
-    """What gives the numbers of blocks by their coordinates, -1 where none was kept.
-
-    A table of the cube holds octets of blocks: one of single blocks takes gigabytes at 2048 cells.
-    """
-    octets = np.full((across // 2 + 1,) * 3, -1, np.int32)
-    octets[tuple(blocks.T >> 1)] = np.arange(len(blocks))
-    members = np.full((len(blocks), 2, 2, 2), -1, np.int32)
-    members[octets[tuple(blocks.T >> 1)], *(blocks.T & 1)] = np.arange(len(blocks))
-
-    def number_of(wanted: Ids) -> NDArray[np.int32]:
-        octet = octets[tuple(wanted.T >> 1)]
-        return np.where(octet < 0, np.int32(-1), members[octet, *(wanted.T & 1)])
-
-    return number_of
-
-
-def _own_values(network: Network, blocks: Ids, cell: float) -> Floats:
-    """The field at the points that blocks own, (b, 2, 2, 2)."""
-    inner = _lattice(BLOCK)
-    own = np.empty((len(blocks), BLOCK**3), np.float32)
-    for start in range(0, len(blocks), TOGETHER):
-        some = blocks[start : start + TOGETHER, None] * BLOCK + inner
-        own[start : start + TOGETHER] = _field(network, some.reshape(-1, 3), cell).reshape(
-            -1, BLOCK**3
-        )
-    return own.reshape(-1, *(BLOCK,) * 3)
-
-
-def _rim_values(
-    network: Network, blocks: Ids, absent: NDArray[np.bool_], cell: float
-) -> tuple[Floats, Ids]:
-    """The field at the rim points that no kept block owns, each evaluated once; their numbers."""
-    block, *offset = np.nonzero(absent)
-    keys = _key(blocks[block] * BLOCK + np.stack(offset, axis=1))
-    unique, inverse = np.unique(keys, return_inverse=True)
-    return _field(network, _unkey(unique), cell)[inverse], inverse
-
-
-def _field(network: Network, grid: Ids, cell: float) -> Floats:
-    return evaluate(network, (grid * cell - LIMIT).astype(np.float32))[:, 0]
-
-
-def _key(grid: Ids) -> Ids:
-    return grid[..., 0] << 40 | grid[..., 1] << 20 | grid[..., 2]
-
-
-def _unkey(keys: Ids) -> Ids:
-    mask = (1 << 20) - 1
-    return np.stack([keys >> 40, keys >> 20 & mask, keys & mask], axis=-1)
-
-
-def _polygons(
-    values: Floats, points: NDArray[np.int32]
-) -> tuple[Ids, NDArray[np.int8], NDArray[np.int32]]:
+def _polygons(values: Floats, points: Numbers) -> tuple[Ids, NDArray[np.int8], Numbers]:
     """The crossed grid edges: where their low ends are in `values` (n,), their axes; faces (m, 3).
 
     An edge is known by the number of its low point, so that no sorting is needed to find the same

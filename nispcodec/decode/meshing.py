@@ -11,7 +11,8 @@ from nispcodec.asset import IndexArray, TexturedMesh
 from nispcodec.decode.atlas import asset_uv
 from nispcodec.decode.charting import vertex_charts
 from nispcodec.decode.components import ExtractionReport, without_noise
-from nispcodec.decode.extract import LIMIT, Surface, extract, near_surface
+from nispcodec.decode.extract import Surface, extract, near_surface
+from nispcodec.decode.grid import LIMIT
 from nispcodec.decode.seams import cut_along_seams
 from nispcodec.decode.simplify import deviation, simplest, simplified
 from nispcodec.decode.thinness import thin_share
@@ -22,7 +23,7 @@ LEAST, MOST = 256, 512
 # Where this share of the surface has walls thinner than a cell, up to FACES triangles are spent.
 THIN = 0.02
 FACES = 500_000
-FACES_A_BLOCK = 3.7
+FACES_A_BLOCK = 5.7
 MAX_RESOLUTION = 2048
 FITTINGS = 4
 

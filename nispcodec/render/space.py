@@ -15,7 +15,8 @@ from numpy.typing import NDArray
 from scipy.ndimage import distance_transform_edt, label, map_coordinates
 
 from nispcodec.decode.evaluate import evaluate, gradient
-from nispcodec.decode.extract import LIMIT, OUTSIDE, extract
+from nispcodec.decode.extract import OUTSIDE, extract
+from nispcodec.decode.grid import LIMIT
 from nispcodec.network import Network
 from nispcodec.render.fragments import Floats, Indices
 

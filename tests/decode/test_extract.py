@@ -7,7 +7,8 @@ import pytest
 
 from nispcodec.decode.components import components, spurious, without, without_noise
 from nispcodec.decode.evaluate import evaluate
-from nispcodec.decode.extract import LIMIT, Surface, extract
+from nispcodec.decode.extract import Surface, extract
+from nispcodec.decode.grid import LIMIT
 from nispcodec.network import Network
 from tests import tiny
 from tests.decode.surfaces import areas, assert_closed, assert_sound
