@@ -53,16 +53,18 @@ def targets(asset: str) -> list[Target]:
     return [*asked, accuracy] if precise else asked
 
 
-def measure(source: Path, folder: Path, preset: str) -> Record:
+def measure(source: Path, folder: Path, preset: str, seed: int) -> Record:
     """Encode, decode, read the decode back and compare: everything about one asset."""
     model, decoded = folder / f"{source.stem}.nisp", folder / f"{source.stem}.glb"
-    encoding = run([NISP, "encode", source, "-o", model, "--preset", preset, "--json"], folder)
+    settings = ["--preset", preset, "--seed", str(seed)]
+    encoding = run([NISP, "encode", source, "-o", model, *settings, "--json"], folder)
     decoding = run([NISP, "decode", model, "--mesh", "-o", decoded], folder)
     info = json.loads(run([NISP, "info", model, "--json"], folder).stdout)
     original, back = load_mesh(source), load_mesh(decoded)
     return {
         "commit": commit(),
         "preset": preset,
+        "seed": seed,
         "faces": len(original.faces),
         "decoded_faces": len(back.faces),
         "encode": cost(encoding),
@@ -106,14 +108,14 @@ def table(records: dict[str, Record]) -> str:
     return "\n".join(lines)
 
 
-def attempt(source: Path, keep: Path | None, preset: str) -> Record:
+def attempt(source: Path, keep: Path | None, preset: str, seed: int) -> Record:
     """The record of one asset, or of how it failed: one failure must not stop the rest."""
     try:
         if keep is not None:
             keep.mkdir(parents=True, exist_ok=True)
-            return measure(source, keep, preset)
+            return measure(source, keep, preset, seed)
         with tempfile.TemporaryDirectory() as folder:
-            return measure(source, Path(folder), preset)
+            return measure(source, Path(folder), preset, seed)
     except Exception as error:
         return {"commit": commit(), "failure": f"{type(error).__name__}: {error}"}
 
@@ -130,10 +132,17 @@ def store(path: Path, records: dict[str, Record]) -> None:
 @click.option("--only", multiple=True, help="An asset; may be repeated.")
 @click.option("--again", is_flag=True, help="Measure assets that have a result already.")
 @click.option("--preset", default="balanced", show_default=True)
+@click.option("--seed", default=0, show_default=True)
 @click.option("--keep", type=click.Path(path_type=Path), help="Leave .nisp and .glb files here.")
 @click.option("-o", "--output", type=click.Path(path_type=Path), default=RESULTS, show_default=True)
 def main(
-    assets: Path, only: tuple[str, ...], again: bool, preset: str, keep: Path | None, output: Path
+    assets: Path,
+    only: tuple[str, ...],
+    again: bool,
+    preset: str,
+    seed: int,
+    keep: Path | None,
+    output: Path,
 ) -> None:
     """Run the main job on every asset and print asked against measured."""
     records = json.loads(output.read_text())["assets"] if output.exists() else {}
@@ -143,7 +152,7 @@ def main(
         if (only and name not in only) or (done and not again):
             continue
         click.echo(f"{name} ...", err=True)
-        records[name] = attempt(source, keep, preset)
+        records[name] = attempt(source, keep, preset, seed)
         store(output, records)
         click.echo(table({name: records[name]}), err=True)
     click.echo(table(records))

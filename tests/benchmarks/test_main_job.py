@@ -68,7 +68,7 @@ def test_one_failure_does_not_stop_the_rest_and_results_are_kept(tmp_path: Path,
         (tmp_path / name / f"{name}.obj").write_text("")
     seen = []
 
-    def measure(source: Path, folder: Path, preset: str):
+    def measure(source: Path, folder: Path, preset: str, seed: int):
         seen.append(source.stem)
         if source.stem == "alpha" and len(seen) == 1:
             raise RuntimeError("no luck")
