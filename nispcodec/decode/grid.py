@@ -60,7 +60,9 @@ class Grid:
         """Which blocks (n, 3) were already given to `sampled`."""
         number = self._numbering.find(blocks)
         # A block's last point is no other's.
-        return (number >= 0) & self._known[number, -1, -1, -1]
+        sampled = number >= 0
+        sampled[sampled] = self._known[number[sampled], -1, -1, -1]
+        return sampled
 
     def _evaluate(self, owners: list[Numbers]) -> None:
         """Asks the network at those points of the owners that no block has asked for before."""
@@ -93,8 +95,9 @@ class _Numbering:
 
     def __init__(self, across: int) -> None:
         self.blocks = np.empty((0, 3), np.int64)
-        self._octets = np.full((across // 2 + 1,) * 3, -1, np.int32)
-        self._members = np.empty((0, 2, 2, 2), np.int32)
+        # The first octet stands for all that were not met.
+        self._octets = np.zeros((across // 2 + 1,) * 3, np.int32)
+        self._members = np.full((1, 2, 2, 2), -1, np.int32)
 
     def __call__(self, wanted: Ids) -> Numbers:
         """The numbers (n,) of blocks (n, 3), each there once; those not met before get the next."""
@@ -108,11 +111,10 @@ class _Numbering:
 
     def find(self, wanted: Ids) -> Numbers:
         """The numbers (n,) of blocks (n, 3), -1 for those not met."""
-        octet = self._octets[*(wanted >> 1).T]
-        return np.where(octet < 0, np.int32(-1), self._members[octet, *(wanted & 1).T])
+        return self._members[self._octets[*(wanted >> 1).T], *(wanted & 1).T]
 
     def _add_octets(self, wanted: Ids) -> None:
-        absent = wanted[self._octets[*wanted.T] < 0]
+        absent = wanted[self._octets[*wanted.T] == 0]
         # Of those there more than once, the one whose number stays.
         order = np.arange(len(absent))
         self._octets[*absent.T] = order
