@@ -88,15 +88,16 @@ def spurious(network: Network, surface: Surface) -> tuple[NDArray[np.bool_], Int
     vertices = np.bincount(labels, minlength=count)
     slope = _mean_slopes(network, surface, labels, vertices)
     flat = (slope < FLAT) & (vertices * surface.cell**2 < SPECK_AREA)
-    hollow = (_volumes(surface, labels) < 0) & (vertices < HOLLOW_SHARE * len(labels))
+    hollow = _volumes(surface, labels, vertices < HOLLOW_SHARE * len(labels)) < 0
     return (nearest > OUTSIDE) | (slope > STEEP) | flat | hollow, labels
 
 
-def _volumes(surface: Surface, labels: Integers) -> NDArray[np.float64]:
-    """What each closed component encloses; below 0 when its outside is within (Gauss)."""
-    a, b, c = np.moveaxis(surface.positions[surface.faces].astype(np.float64), 1, 0)
+def _volumes(surface: Surface, labels: Integers, small: NDArray[np.bool_]) -> NDArray[np.float64]:
+    """What each small closed component encloses; below 0 when its outside is within (Gauss)."""
+    faces = surface.faces[small[labels[surface.faces[:, 0]]]]
+    a, b, c = np.moveaxis(surface.positions[faces].astype(np.float64), 1, 0)
     volume = np.einsum("ij,ij->i", a, np.cross(b, c)) / 6
-    return np.bincount(labels[surface.faces[:, 0]], volume).astype(np.float64)
+    return np.bincount(labels[faces[:, 0]], volume, len(small)).astype(np.float64)
 
 
 def _mean_slopes(
@@ -120,6 +121,8 @@ def _slopes(network: Network, surface: Surface, chosen: NDArray[np.int64]) -> ND
 
 def without(surface: Surface, unwanted: NDArray[np.bool_], labels: Integers) -> Surface:
     """The surface without the components marked in `unwanted` (c,) bool."""
+    if not unwanted.any():
+        return surface
     keep = ~unwanted[labels]
     renumbered = (np.cumsum(keep) - 1).astype(np.int32)
     faces = surface.faces[keep[surface.faces[:, 0]]]

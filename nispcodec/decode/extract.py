@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from nispcodec.decode.evaluate import evaluate, gradient
-from nispcodec.decode.grid import BLOCK, LIMIT, Floats, Grid, Ids, Numbers
+from nispcodec.decode.grid import BLOCK, LIMIT, TOGETHER, Floats, Grid, Ids, Numbers
 from nispcodec.decode.marching import CORNERS, EDGES, polygonise
 from nispcodec.decode.newton import onto_surface
 from nispcodec.network import Network
@@ -21,6 +21,7 @@ from nispcodec.network import Network
 # Nothing of the asset is outside of this ball.
 OUTSIDE = 1.01
 ROOT = 32
+MARGIN = 1.25
 NEWTON_STEPS = 2
 # Vertices keep this share of a cell from grid points, where several would coincide.
 CLEARANCE = 0.01
@@ -70,10 +71,10 @@ def _surface_blocks(network: Network, root: int, levels: int, cell: float) -> Id
     """Integer coordinates (b, 3) of the blocks of BLOCK^3 cells that may hold surface.
 
     A block is halved and kept while the field at its centre is no larger than it may become over
-    half the block's diagonal; at the end, over half its edge: a surface that passes between the
-    centres of two blocks is that close to one of them, and from there it is followed. How fast the
-    field may grow is measured anew among the blocks of each level: far from the surface a fitted
-    field is steeper than near it.
+    half the block's diagonal, and a margin; at the end, over half its edge: a surface that passes
+    between the centres of two blocks is that close to one of them, and from there it is followed.
+    How fast the field may grow is measured anew among the blocks of each level: far from the
+    surface a fitted field is steeper than near it.
     """
     blocks = _lattice(root)
     for level in range(levels, -1, -1):
@@ -82,7 +83,7 @@ def _surface_blocks(network: Network, root: int, levels: int, cell: float) -> Id
         if level == levels:
             bound = _steepness(network, centres)
         distance = np.abs(evaluate(network, centres)[:, 0])
-        near = distance <= bound * size * (np.sqrt(3) if level else 1) / 2
+        near = distance <= bound * size / 2 * (MARGIN * np.sqrt(3) if level else 1)
         blocks = blocks[near]
         if level:
             bound = _steepness(network, centres[near])
@@ -100,9 +101,9 @@ def _lattice(count: int) -> Ids:
 
 
 def _steepness(network: Network, points: Floats) -> float:
-    """A bound on the field's slope round the points: 1 for an SDF, for a fitted one only nearly."""
+    """How steep the field is round most points: 1 for an SDF, for a fitted one only nearly."""
     slopes = np.linalg.norm(gradient(network, points)[1], axis=1)
-    return float(1.25 * np.percentile(slopes, 99, method="higher")) if len(slopes) else 1.0
+    return float(np.percentile(slopes, 99, method="higher")) if len(slopes) else 1.0
 
 
 def _sampled(grid: Grid, blocks: Ids) -> tuple[Ids, Floats, Numbers]:
@@ -150,18 +151,23 @@ def _polygons(values: Floats, points: Numbers) -> tuple[Ids, NDArray[np.int8], N
     """
     cases = _cases(values)
     cells = np.flatnonzero((cases > 0) & (cases < 255))
-    owners, triangles = polygonise(cases[cells])
+    first = _first_corners(cells)
     lows, axes = np.array([low for low, _ in EDGES]), np.array([axis for _, axis in EDGES], np.int8)
-    places = _first_corners(cells)[owners, None] + (CORNERS @ STRIDES)[lows[triangles]]
-    edges = 3 * points.ravel()[places] + axes[triangles]
-    numbers = np.zeros(3 * (int(points.max(initial=0)) + 1), np.int32)
-    numbers[edges] = 1
-    crossed = np.flatnonzero(numbers)
-    numbers[crossed] = np.arange(len(crossed))
-    faces = numbers[edges]
-    first = np.empty(len(crossed), np.int64)
-    first[faces] = places
-    return first, (crossed % 3).astype(np.int8), faces
+    ends = CORNERS[lows] @ STRIDES
+    table = np.zeros(3 * (int(points.max(initial=0)) + 1), np.int32)
+    edges = [np.empty((0, 3), np.int32)]
+    for start in range(0, len(cells), TOGETHER):
+        some = slice(start, start + TOGETHER)
+        owners, triangles = polygonise(cases[cells[some]])
+        places = first[some][owners, None] + ends[triangles]
+        edges.append(3 * points.ravel()[places] + axes[triangles])
+        # Where an edge's low end is, and one, so that 0 is an edge not crossed.
+        table[edges[-1]] = places + 1
+    crossed = np.flatnonzero(table)
+    lowest = table[crossed] - 1
+    table[crossed] = np.arange(len(crossed))
+    faces = np.concatenate([table[some] for some in edges])
+    return lowest.astype(np.int64), (crossed % 3).astype(np.int8), faces
 
 
 def _cases(values: Floats) -> NDArray[np.uint8]:

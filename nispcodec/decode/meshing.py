@@ -23,7 +23,7 @@ LEAST, MOST = 256, 512
 # Where this share of the surface has walls thinner than a cell, up to FACES triangles are spent.
 THIN = 0.02
 FACES = 500_000
-FACES_A_BLOCK = 5.7
+FACES_A_BLOCK = 6.6
 MAX_RESOLUTION = 2048
 FITTINGS = 4
 

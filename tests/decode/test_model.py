@@ -164,8 +164,10 @@ def test_faces_bounds_the_mesh_and_keeps_its_seams(model: NispModel) -> None:
     assert 300 < len(mesh.faces) <= 600
     assert_closed(mesh.faces)
     x = mesh.corners[:, :, 0] - FRAME.center[0]
-    assert (x[mesh.face_materials == 0] < 0.01).all()
-    assert (x[mesh.face_materials == 1] > -0.01).all()
+    # Simplification may move the border, but by no more than a fifth of a cell.
+    tolerance = 0.2 * FRAME.radius * 2.04 / 64
+    assert (x[mesh.face_materials == 0] < tolerance).all()
+    assert (x[mesh.face_materials == 1] > -tolerance).all()
     assert np.abs(model.sdf(mesh.corners.mean(axis=1), "world")).max() < 0.05
     assert len(model.to_mesh(16, faces=10**6).faces) == len(model.to_mesh(16).faces)
 
