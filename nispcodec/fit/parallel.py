@@ -10,7 +10,7 @@ import multiprocessing
 import queue
 import signal
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager, contextmanager, nullcontext
 from multiprocessing.context import ForkContext, SpawnContext
 from multiprocessing.process import BaseProcess
@@ -37,7 +37,8 @@ def fit_networks(
 ) -> dict[str, Network]:
     """Fit all tasks in parallel; `threads` of them compute at any moment.
 
-    The first, which should be the longest, has a core to itself; the others share what is left.
+    The first, which should be the longest, has a core to itself, and leaves it to the others, who
+    share what is left, when it is done.
     The result depends on the tasks, the seed and the device alone. An exception in one task, or
     Ctrl-C, stops the others.
     """
@@ -49,8 +50,13 @@ def fit_networks(
         task.name: _started(context, task, seed, device, core, messages)
         for task, core in zip(tasks, cores, strict=True)
     }
+
+    def done(name: str) -> None:
+        if name == tasks[0].name and threads > 1:
+            shared.release()
+
     with _ended(list(workers.values())):
-        networks = _collected(workers, messages, listen)
+        networks = _collected(workers, messages, listen, done)
     return {task.name: networks[task.name] for task in tasks}
 
 
@@ -111,7 +117,10 @@ def _orphaned() -> bool:
 
 
 def _collected(
-    workers: dict[str, BaseProcess], messages: Queue[Message], listen: Listener
+    workers: dict[str, BaseProcess],
+    messages: Queue[Message],
+    listen: Listener,
+    done: Callable[[str], None],
 ) -> dict[str, Network]:
     networks: dict[str, Network] = {}
     while len(networks) < len(workers):
@@ -126,6 +135,7 @@ def _collected(
             listen(told)
         else:
             networks[name] = told
+            done(name)
     return networks
 
 

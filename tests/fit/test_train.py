@@ -128,6 +128,19 @@ def test_the_same_seed_gives_the_same_weights_on_any_number_of_threads() -> None
     assert not np.array_equal(weights[0], weights[2])
 
 
+def test_a_core_that_the_first_leaves_is_for_the_others() -> None:
+    """Both wait for each other in the middle of a step, so both need a core at that moment."""
+    meeting = multiprocessing.get_context("fork").Barrier(2, timeout=30)
+
+    def meets(module: Module, batch: Batch) -> torch.Tensor:
+        meeting.wait()
+        return distance_error(module, batch)
+
+    others = [replace(sdf_task(1), name=name, loss=meets) for name in ("one", "two")]
+    found = fit_networks([sdf_task(1), *others], 0, "cpu", 2, silent)
+    assert set(found) == {"sdf", "one", "two"}
+
+
 def test_processes_that_start_afresh_give_the_same(monkeypatch: pytest.MonkeyPatch) -> None:
     """As on other systems than Linux, and for CUDA."""
     tasks = [sdf_task(50), chart_task()]
