@@ -67,7 +67,12 @@ def training_sets(sampler: Sampler) -> TrainingSets:
 
 
 def paper_training_sets(sampler: Sampler) -> TrainingSets:
-    """The paper's: importance samples for all networks, judged on the surface (section 4.1)."""
+    """The paper's: importance samples for all networks, judged on the surface (section 4.1).
+
+    They leave most of space untold, where a fitted SDF then has as much surface again as the asset:
+    it sees the cube's samples as well.
+    """
     samples = sampler.importance(PAPER_COUNT)
+    distance = SampleSet.joined((samples, sampler.cube(CUBE_COUNT)))
     surface = sampler.surface(HELD_OUT_COUNT)
-    return TrainingSets(samples, samples, sampler.near(HELD_OUT_COUNT, SKIN), surface, samples)
+    return TrainingSets(distance, samples, sampler.near(HELD_OUT_COUNT, SKIN), surface, samples)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from nispcodec.mesh import training
 from nispcodec.mesh.points import barycentric
 from nispcodec.mesh.samples import BETA, CUBE, Sampler, normalising_frame
 from tests.mesh.shapes import box_asset, cube, hemisphere, soup
@@ -26,6 +27,14 @@ def test_the_papers_sampler_and_the_direct_one_agree() -> None:
     assert np.abs(shares[0] - shares[1]).max() < 0.025
     inside = [(s.sdf < 0).mean() for s in (reference, direct)]
     assert inside[0] == pytest.approx(inside[1], abs=0.03)
+
+
+def test_the_papers_sdf_is_told_about_empty_space_too(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(training, "PAPER_COUNT", 2000)
+    sets = training.paper_training_sets(Sampler(box_asset(), seed=0))
+    assert (sets.distance.sdf > 0.3).sum() > 2000
+    assert len(sets.skin) == len(sets.textured) == 2000
+    assert (sets.skin.sdf < 0.3).all()
 
 
 def test_labels_of_the_box() -> None:
