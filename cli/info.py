@@ -26,11 +26,12 @@ def command(model: Path, listed: bool, as_json: bool) -> None:
     \b
     Example: nisp info model.nisp --json
     """
-    from nispcodec.format import unpack
+    from nispcodec.format import read
 
-    data = model.read_bytes()
-    document = unpack(data)
-    facts = {"textures": list_textures(document)} if listed else describe(document, data)
+    document = read(model)
+    facts = (
+        {"textures": list_textures(document)} if listed else describe(document, model.read_bytes())
+    )
     if as_json:
         print_json(facts)
     else:

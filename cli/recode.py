@@ -40,10 +40,10 @@ def command(
     \b
     Example: nisp recode model.nisp -o small.nisp --texture-format webp
     """
-    from nispcodec.format import pack, unpack
+    from nispcodec.format import pack, read
     from nispcodec.output import write_atomic
 
-    document = unpack(model.read_bytes())
+    document = read(model)
     if no_textures:
         document = _without_textures(document)
     elif texture_format is not None:

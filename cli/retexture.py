@@ -30,11 +30,11 @@ def command(model: Path, slots: tuple[str, ...], material: str | None, output: P
     \b
     Example: nisp retexture model.nisp --slot base_color=edited.png -o new.nisp
     """
-    from nispcodec.format import pack, unpack
+    from nispcodec.format import pack, read
     from nispcodec.output import write_atomic
     from nispcodec.retexture import retextured
 
-    document = unpack(model.read_bytes())
+    document = read(model)
     for text in slots:
         slot, equals, image = text.partition("=")
         if not equals:

@@ -18,10 +18,10 @@ def command(model: Path, output: Path) -> None:
     \b
     Example: nisp unpack model.nisp -o textures
     """
-    from nispcodec.format import unpack
+    from nispcodec.format import read
     from nispcodec.output import write_atomic
 
-    textures = unpack(model.read_bytes()).textures
+    textures = read(model).textures
     output.mkdir(parents=True, exist_ok=True)
     for texture in textures:
         path = output / texture.name  # a bare file name: the format allows no other

@@ -42,13 +42,9 @@ __version__ = "0.1.0"
 def load(path: str | Path) -> NispModel:
     """Read a `.nisp` file. Raises FormatError for a malformed one, NispError if unreadable."""
     from nispcodec.decode.model import NispModel
-    from nispcodec.format import unpack
+    from nispcodec.format import read
 
-    try:
-        data = Path(path).read_bytes()
-    except OSError as why:
-        raise NispError(f"{path}: cannot be read: {why}") from why
-    return NispModel(unpack(data))
+    return NispModel(read(path))
 
 
 def save(model: NispModel, path: str | Path) -> None:

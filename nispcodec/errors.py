@@ -26,8 +26,11 @@ class QueryError(NispError):
 class FormatError(NispError):
     """A `.nisp` container is malformed.
 
-    Attributes: `section` (four-character code or "header"), `field`, `expected`, `found`.
+    Attributes: `section` (four-character code or "header"), `field`, `expected`, `found`; `file`,
+    where the bytes came from one.
     """
+
+    file: str | None = None
 
     def __init__(self, section: str, field: str, expected: object, found: object) -> None:
         super().__init__(f"section {section}, field {field}: expected {expected}, found {found}")
@@ -35,3 +38,7 @@ class FormatError(NispError):
         self.field = field
         self.expected = expected
         self.found = found
+
+    def __str__(self) -> str:
+        text = super().__str__()
+        return f"{self.file}: {text}" if self.file else text

@@ -3,5 +3,6 @@
 from __future__ import annotations
 
 from nispcodec.format.document import SectionInfo, inspect, pack, unpack
+from nispcodec.format.file import read
 
-__all__ = ["SectionInfo", "inspect", "pack", "unpack"]
+__all__ = ["SectionInfo", "inspect", "pack", "read", "unpack"]

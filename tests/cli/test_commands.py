@@ -71,7 +71,7 @@ def test_broken_model_is_refused(model: Path, tmp_path: Path, command: str, kept
     points = tmp_path / "p.npy"
     np.save(points, np.zeros((1, 3)))
     out = {"decode": ("-o", tmp_path / "o.glb"), "query": (points, "-o", tmp_path / "o.npz")}
-    refused(nisp(command, model, *out.get(command, ())))
+    refused(nisp(command, model, *out.get(command, ())), str(model))
     assert not list(tmp_path.glob("o.*"))
 
 
@@ -199,6 +199,6 @@ def test_errors_of_the_program_itself_are_not_hidden(monkeypatch, model: Path) -
     def broken(*_: object) -> None:
         raise AssertionError("a bug")
 
-    monkeypatch.setattr("nispcodec.format.unpack", broken)
+    monkeypatch.setattr("nispcodec.format.read", broken)
     with pytest.raises(AssertionError):
         CliRunner().invoke(group, ["info", str(model)], catch_exceptions=False)

@@ -1,0 +1,23 @@
+"""A `.nisp` file on disk."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from nispcodec.document import Document
+from nispcodec.errors import FormatError, NispError
+from nispcodec.format.document import unpack
+
+
+def read(path: str | Path) -> Document:
+    """The document in a file.
+
+    Raises FormatError, naming the file, for a malformed one and NispError for an unreadable one.
+    """
+    try:
+        return unpack(Path(path).read_bytes())
+    except OSError as why:
+        raise NispError(f"{path}: cannot be read: {why}") from why
+    except FormatError as error:
+        error.file = str(path)
+        raise
