@@ -164,7 +164,8 @@ def test_faces_bounds_the_mesh_and_keeps_its_seams(model: NispModel) -> None:
     assert 300 < len(mesh.faces) <= 600
     assert_closed(mesh.faces)
     x = mesh.corners[:, :, 0] - FRAME.center[0]
-    # Simplification may move the border, but by no more than a fifth of a cell.
+    # Simplification may move the border, but by no more than a fifth of a cell: how far
+    # depends on the order of the triangles.
     tolerance = 0.2 * FRAME.radius * 2.04 / 64
     assert (x[mesh.face_materials == 0] < tolerance).all()
     assert (x[mesh.face_materials == 1] > -tolerance).all()
