@@ -14,13 +14,14 @@ from nispcodec.errors import FitError, NispError
 from nispcodec.fit.presets import Effort, Problem, probes, sine_tasks
 from nispcodec.fit.prune import Pruning
 from nispcodec.fit.sizes import (
-    MIN_WIDTH,
-    Widths,
+    Hidden,
     bits_of,
     bytes_of,
     even_width,
+    hidden_layers,
+    layers,
     scale_for_bytes,
-    widths_for,
+    smallest,
 )
 from nispcodec.fit.task import Task
 from nispcodec.format import inspect, pack
@@ -64,10 +65,10 @@ class Fitting:
         return errors
 
     def tasks(
-        self, widths: Widths, errors: Mapping[str, float], budgets: Mapping[str, float]
+        self, hidden: Hidden, errors: Mapping[str, float], budgets: Mapping[str, float]
     ) -> list[Task]:
-        """The tasks for networks of these widths."""
-        tasks = sine_tasks(self.problem, widths, self.effort, errors, budgets)
+        """The tasks for networks with these hidden layers."""
+        tasks = sine_tasks(self.problem, hidden, self.effort, errors, budgets)
         return pruned(tasks, self.prunings)
 
 
@@ -79,8 +80,8 @@ def pruned(tasks: list[Task], prunings: Mapping[str, Pruning]) -> list[Task]:
 def fit_with_preset(fitting: Fitting) -> Networks:
     """Networks as large as the preset and the asset suggest."""
     errors = fitting.probe()
-    widths = widths_for(errors, fitting.problem.area, fitting.effort.scale)
-    return fitting.fit(fitting.tasks(widths, errors, {}), fitting.listen)
+    hidden = hidden_layers(errors, fitting.problem.area, fitting.effort.scale)
+    return fitting.fit(fitting.tasks(hidden, errors, {}), fitting.listen)
 
 
 def fit_to_size(
@@ -91,9 +92,9 @@ def fit_to_size(
     Raises NispError, before anything is trained, when that is too few for the asset.
     """
     problem = fitting.problem
-    smallest = problem.specs(dict.fromkeys(problem.networks, MIN_WIDTH))
-    besides = _bytes_besides(document({name: _blank(spec) for name, spec in smallest.items()}))
-    least = besides + bytes_of(smallest)
+    tiny = problem.specs(smallest(problem.networks))
+    besides = _bytes_besides(document({name: _blank(spec) for name, spec in tiny.items()}))
+    least = besides + bytes_of(tiny)
     if wanted < least:
         raise NispError(
             f"target size: expected at least {least:,.0f} bytes for this asset (its tables and the "
@@ -101,14 +102,14 @@ def fit_to_size(
         )
     errors = fitting.probe()
     scale = scale_for_bytes(
-        lambda scale: bytes_of(problem.specs(widths_for(errors, problem.area, scale))),
+        lambda scale: bytes_of(problem.specs(hidden_layers(errors, problem.area, scale))),
         wanted - besides,
     )
-    widths = widths_for(errors, problem.area, scale)
-    specs = problem.specs(widths)
+    hidden = hidden_layers(errors, problem.area, scale)
+    specs = problem.specs(hidden)
     share = (wanted - besides) / bytes_of(specs)
     budgets = {name: share * bits for name, bits in bits_of(specs).items()}
-    return fitting.fit(fitting.tasks(widths, errors, budgets), fitting.listen)
+    return fitting.fit(fitting.tasks(hidden, errors, budgets), fitting.listen)
 
 
 def fit_to_error(fitting: Fitting, wanted: float) -> Networks:
@@ -120,24 +121,25 @@ def fit_to_error(fitting: Fitting, wanted: float) -> Networks:
     if wanted < LEAST_ERROR:
         raise NispError(f"target error: expected at least {LEAST_ERROR:g}, found {wanted:g}")
     errors = fitting.probe()
-    widths = dict(widths_for(errors, fitting.problem.area, fitting.effort.scale))
+    hidden = dict(hidden_layers(errors, fitting.problem.area, fitting.effort.scale))
     networks: Networks = {}
     tried: dict[int, float] = {}
     for _ in range(ROUNDS):
-        tasks = [task for task in fitting.tasks(widths, errors, {}) if task.name not in networks]
+        tasks = [task for task in fitting.tasks(hidden, errors, {}) if task.name not in networks]
         networks |= fitting.fit(tasks, fitting.listen)
-        tried[widths["sdf"]] = error = _distance_error(fitting.problem, networks["sdf"])
-        note = f"sdf of width {widths['sdf']}: mean distance {error:.3g}, asked {wanted:.3g}"
+        used = hidden["sdf"][0]
+        tried[used] = error = _distance_error(fitting.problem, networks["sdf"])
+        note = f"sdf of width {used}: mean distance {error:.3g}, asked {wanted:.3g}"
         fitting.listen(Progress(network="sdf", stage="fit", note=note))
         width = _next_width(tried, wanted)
         if abs(error / wanted - 1) <= CLOSE or width in tried:
             break
         del networks["sdf"]
-        widths["sdf"] = width
+        hidden["sdf"] = layers(width, len(hidden["sdf"]))
     if error > (1 + CLOSE) * wanted:
         raise FitError(
             f"target error: expected {wanted:g} within {CLOSE:.0%}, found {error:.3g} with an SDF "
-            f"of width {widths['sdf']}; a preset that takes longer may do better"
+            f"of width {used}; a preset that takes longer may do better"
         )
     return networks
 

@@ -14,7 +14,7 @@ from nispcodec.fit.losses import (
     uv_error,
     uv_loss,
 )
-from nispcodec.fit.sizes import FINE, LAYERS, Widths
+from nispcodec.fit.sizes import FINE, Hidden
 from nispcodec.fit.task import Rounding, Schedule, Task
 from nispcodec.mesh.mirror import Mirrors
 from nispcodec.mesh.sample_set import SampleSet
@@ -38,7 +38,7 @@ WIDE, WIDE_BATCH = 36, 1024
 SHARES = {"sdf": 1.0, "chart": 0.35, "uv": 0.47}
 """Of the seconds: the SDF has a core to itself, charts and UVs share the other."""
 
-RATES = {"sdf": 1e-3, "chart": 3e-3, "uv": 1e-3}
+RATES = {"sdf": 1e-3, "chart": 2e-3, "uv": 1e-3}
 FINE_RATE = 5e-4
 FINE_TIME = 0.87
 """Assets of fine detail take longer to read and to sample: their fits give that time back."""
@@ -52,7 +52,7 @@ PROBE_BAND = 0.7
 SDF_LAST = 0.3
 """Relative rate of the SDF's last layer: its bias moves the whole field at once."""
 
-PROBE_WIDTH = 24
+PROBE_HIDDEN = {"sdf": (24,) * 4, "chart": (24,) * 3, "uv": (24,) * 4}
 PROBE_STEPS = {"sdf": 1000, "chart": 600, "uv": 1000}
 
 
@@ -74,7 +74,7 @@ class Effort:
 
 EFFORTS = {
     "fast": Effort(9.0, 0.8, 3, 800, PROBE_BAND),
-    "balanced": Effort(46.0, 1.0, 9, 800),
+    "balanced": Effort(74.0, 1.0, 9, 800),
     "best": Effort(330.0, 1.2, 15, 4000),
 }
 
@@ -102,12 +102,11 @@ class Problem:
         needed = {"sdf": True, "chart": self.charts > 1, "uv": self.has_uv}
         return tuple(name for name, is_needed in needed.items() if is_needed)
 
-    def specs(self, widths: Widths) -> dict[str, NetworkSpec]:
-        """Sine networks of these widths."""
-        return {name: self._spec(name, widths[name]) for name in self.networks}
+    def specs(self, hidden: Hidden) -> dict[str, NetworkSpec]:
+        """Sine networks with these hidden layers."""
+        return {name: self._spec(name, hidden[name]) for name in self.networks}
 
-    def _spec(self, name: str, width: int) -> NetworkSpec:
-        hidden = (width,) * LAYERS[name]
+    def _spec(self, name: str, hidden: tuple[int, ...]) -> NetworkSpec:
         if name == "sdf":
             return NetworkSpec(hidden, 1, mirror=self.mirrors.sdf)
         if name == "chart":
@@ -124,7 +123,7 @@ class Problem:
 
 def probes(problem: Problem) -> list[Task]:
     """Small networks and short fits that tell how much there is to learn."""
-    specs = problem.specs(dict.fromkeys(problem.networks, PROBE_WIDTH))
+    specs = problem.specs(PROBE_HIDDEN)
     return [
         _task(problem.sets, name, spec, _schedule(name, PROBE_STEPS[name], PROBE_BAND))
         for name, spec in specs.items()
@@ -133,7 +132,7 @@ def probes(problem: Problem) -> list[Task]:
 
 def sine_tasks(
     problem: Problem,
-    widths: Widths,
+    hidden: Hidden,
     effort: Effort,
     errors: Mapping[str, float],
     budgets: Mapping[str, float],
@@ -146,8 +145,8 @@ def sine_tasks(
     fine = errors["sdf"] > FINE
     seconds = effort.seconds * (FINE_TIME if fine else 1.0)
     tasks = []
-    for name, spec in problem.specs(widths).items():
-        wide = name == "sdf" and widths["sdf"] >= WIDE and not fine
+    for name, spec in problem.specs(hidden).items():
+        wide = name == "sdf" and spec.hidden[0] >= WIDE and not fine
         batch = WIDE_BATCH if wide else BATCHES[name]
         steps = steps_in(seconds * SHARES[name], spec, batch)
         schedule = replace(

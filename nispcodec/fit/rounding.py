@@ -22,7 +22,8 @@ from nispcodec.errors import FitError
 from nispcodec.fit.module import Module, snapped
 from nispcodec.fit.task import Batch, Curvature, Rounding
 
-SAMPLES = 8_000
+SAMPLES, MOST_SAMPLES, DERIVATIVES = 8_000, 32_000, 60_000_000
+"""Points that the second derivatives are a mean over: more where there are few weights."""
 BLOCK = 2_500
 """Weights of which all pairs are looked at together: beyond, memory and time run away."""
 
@@ -42,7 +43,8 @@ def round_weights(
     module: Module, samples: Batch, rounding: Rounding, generator: torch.Generator
 ) -> None:
     """Put the weights on a grid, with a step for each tensor; what is pruned costs nothing."""
-    rows = torch.randperm(len(samples), generator=generator)[:SAMPLES]
+    count = min(max(DERIVATIVES // len(module.places), SAMPLES), MOST_SAMPLES)
+    rows = torch.randperm(len(samples), generator=generator)[:count]
     batch = samples.chosen(rows.to(samples.points.device))
     rise = _Rise(module, batch, rounding.curvature)
     # The last of a block is rounded first: so it goes from the first layer to the last, in which

@@ -6,15 +6,15 @@ left with says how much there is to learn.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 
 from nispcodec.network import NetworkSpec
 
-Widths = Mapping[str, int]
-"""Width of the hidden layers by the name of the network."""
+Hidden = Mapping[str, tuple[int, ...]]
+"""Widths of the hidden layers, by the name of the network."""
 
-LAYERS = {"sdf": 4, "chart": 3, "uv": 4}
+LAYERS = 4
 MIN_WIDTH, MAX_WIDTH = 8, 128
 MULTIPLE = 2
 
@@ -40,27 +40,42 @@ class Model:
 
 MODELS = {
     "sdf": Model(30, 1.0e-3, 0.7, 22, 36),
-    "chart": Model(21, 0.03, 0.4, 18, 48),
-    "uv": Model(20, 9.3e-4, 0.6, 12, 40),
+    "chart": Model(15, 0.03, 0.36, 16, 38),
+    "uv": Model(18, 9.3e-4, 0.6, 12, 34),
 }
 
 AREA, AREA_POWER = 5.0, 0.4
 """With the same error left on a larger surface than this (normalised frame) more is to be held."""
 
-FINE, FINE_WIDTH = 1.8e-3, 72
-"""An SDF whose probe is left with more is of another kind: wider, and learns slower."""
+FINE, FINE_WIDTH = 1.8e-3, 68
+"""An SDF whose probe is left with more is of fine detail: wider, and learns slower."""
+
+DEEP = 5
+"""Layers of all networks of such an asset."""
 
 
-def widths_for(errors: Mapping[str, float], area: float, scale: float = 1.0) -> Widths:
-    """The width of every network, from the held-out errors of the probes, times `scale`.
+def hidden_layers(errors: Mapping[str, float], area: float, scale: float = 1.0) -> Hidden:
+    """The hidden layers of every network, from the held-out errors of the probes.
 
-    `area` is the surface's, in the normalised frame.
+    `area` is the surface's, in the normalised frame; widths are `scale` times as large.
     """
     widths = {name: MODELS[name].of(error) for name, error in errors.items()}
     widths["sdf"] *= max(1.0, area / AREA) ** AREA_POWER
-    if errors["sdf"] > FINE:
+    fine = errors["sdf"] > FINE
+    if fine:
         widths["sdf"] = FINE_WIDTH
-    return {name: even_width(scale * width) for name, width in widths.items()}
+    count = DEEP if fine else LAYERS
+    return {name: layers(scale * width, count) for name, width in widths.items()}
+
+
+def smallest(names: Iterable[str]) -> Hidden:
+    """The least hidden layers that these networks are given."""
+    return {name: layers(MIN_WIDTH) for name in names}
+
+
+def layers(width: float, count: int = LAYERS) -> tuple[int, ...]:
+    """So many hidden layers of the width nearest to `width` that they may have."""
+    return (even_width(width),) * count
 
 
 def even_width(width: float) -> int:
