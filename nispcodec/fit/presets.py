@@ -75,7 +75,7 @@ class Effort:
 
 
 EFFORTS = {
-    "fast": Effort(12.0, 0.8, 3, 800, PROBE_BAND, 2.0),
+    "fast": Effort(18.0, 0.8, 3, 800, PROBE_BAND, 2.0),
     "balanced": Effort(74.0, 1.0, 9, 800),
     "best": Effort(330.0, 1.2, 15, 4000),
 }
