@@ -29,7 +29,15 @@ from nispcodec.decode.model import NispModel
 from nispcodec.encoder import GAP
 from nispcodec.fit.module import Module
 from nispcodec.fit.parallel import fit_networks
-from nispcodec.fit.presets import BATCHES, EFFORTS, RATES, SHARES, paper_tasks, steps_in
+from nispcodec.fit.presets import (
+    BATCH,
+    EFFORTS,
+    MEMORIES,
+    RATES,
+    SHARES,
+    paper_tasks,
+    steps_in,
+)
 from nispcodec.fit.task import Batch, Schedule, Task
 from nispcodec.mesh.load import load_mesh
 from nispcodec.mesh.sample_set import SampleSet
@@ -96,7 +104,7 @@ def _schedule(model: NispModel, sets: TrainingSets) -> Schedule:
         tasks = paper_tasks(len(model.document.charts), sets)
         return next(task.schedule for task in tasks if task.name == "uv")
     seconds, spec = EFFORTS[preset].seconds * SHARES["uv"], model.document.networks["uv"].spec
-    return Schedule(steps_in(seconds, spec, BATCHES["uv"]), BATCHES["uv"], RATES["uv"])
+    return Schedule(steps_in(seconds, spec), BATCH, RATES["uv"], memory=MEMORIES["uv"])
 
 
 def _of_size(weights: int) -> NetworkSpec:

@@ -97,6 +97,6 @@ def chart_factors(outputs: Tensor, batch: Batch) -> Tensor:
 
 CURVATURES = {
     "sdf": Curvature(distance_factors, 1e-5),
-    "chart": Curvature(chart_factors, 1e-3),
+    "chart": Curvature(chart_factors, 1e-3, own=False),
     "uv": Curvature(uv_factors, 1e-5),
 }

@@ -12,6 +12,7 @@ from torch.nn import functional
 
 from nispcodec.fit.frames import affine_maps
 from nispcodec.fit.prune import Mask
+from nispcodec.fit.stack import Matrices
 from nispcodec.network import TABLES, Network, NetworkSpec, Weights
 
 
@@ -50,20 +51,22 @@ class Module:
         hidden = {f"{part}.{i}" for i in range(len(self.spec.hidden)) for part in _PARTS}
         return {name: w0 if name in hidden else 1.0 for name in self.spec.shapes}
 
-    def matrices(self, last: float) -> list[tuple[Tensor, float]]:
-        """What a preconditioner sees together, and its rate relative to the schedule's.
+    def matrices(self, last: float) -> tuple[Matrices, Matrices]:
+        """What an optimiser sees together, and its rate relative to the schedule's.
 
         Of each layer [W | b], and of the tables a row for each chart: where its numbers are in the
-        vector. `last` is the rate of the last layer.
+        vector. First those from one hidden layer to the next, then all others; `last` is the rate
+        of the last layer.
         """
         places = self._parts(torch.arange(len(self.weights)))
         count, scales = len(self.spec.hidden), self.scales
-        matrices = [
+        layers = [
             (torch.cat([places[f"weight.{i}"], places[f"bias.{i}"][:, None]], dim=1), rate)
             for i, rate in enumerate([*(scales[f"weight.{i}"] for i in range(count)), last])
         ]
         tables = [places[name] for name in TABLES if name in places]
-        return matrices + ([(torch.cat(tables, dim=1), 1.0)] if tables else [])
+        rows = [(torch.cat(tables, dim=1), 1.0)] if tables else []
+        return layers[1:-1], [layers[0], layers[-1], *rows]
 
     def place_frames(self, points: Tensor, charts: Tensor, uvs: Tensor) -> None:
         """Start from the affine maps nearest to the UVs (n, 2) of points (n, 3) of charts (n,)."""

@@ -28,20 +28,22 @@ PAPER_LEVELS = 5
 PAPER_STEPS = 40_000
 """What twenty minutes on two cores allow of the published 2000 epochs of 10^6 samples."""
 
-PRICES = {"sdf": 7.5e-3, "chart": 0.02, "uv": 6e-5}
-"""How much a bit a weight less may raise the loss."""
+PRICES = {"sdf": 0.06, "chart": 0.02, "uv": 0.12}
+"""How much a bit a weight less may raise the loss, of SDF and UV relative to what is left of it."""
 
-BATCHES = {"sdf": 2048, "chart": 1024, "uv": 2048}
-WIDE, WIDE_BATCH = 36, 1024
-"""An SDF so wide, unless it learns slowly, does better with more and smaller steps."""
+BATCH = 1024
+"""With as long a memory as Muon's, more and smaller steps do better than large ones."""
 
 SHARES = {"sdf": 1.0, "chart": 0.35, "uv": 0.47}
 """Of the seconds: the SDF has a core to itself, charts and UVs share the other."""
 
-RATES = {"sdf": 1e-3, "chart": 2e-3, "uv": 1e-3}
+RATES = {"sdf": 1e-3, "chart": 3e-3, "uv": 1e-3}
 FINE_RATE = 5e-4
 FINE_TIME = 0.87
 """Assets of fine detail take longer to read and to sample: their fits give that time back."""
+
+MEMORIES = {"sdf": 0.01, "chart": 0.007, "uv": 0.04}
+"""Of the steps: with 0.04 an SDF may go flat."""
 
 EMBEDDING = 4
 """Numbers a chart that the UV network is told it by."""
@@ -53,7 +55,7 @@ SDF_LAST = 0.3
 """Relative rate of the SDF's last layer: its bias moves the whole field at once."""
 
 PROBE_HIDDEN = {"sdf": (24,) * 4, "chart": (24,) * 3, "uv": (24,) * 4}
-PROBE_STEPS = {"sdf": 1000, "chart": 600, "uv": 1000}
+PROBE_STEPS = {"sdf": 1500, "chart": 600, "uv": 1500}
 
 
 @dataclass(frozen=True)
@@ -63,7 +65,6 @@ class Effort:
     `reviews`: of the SDF at least, and at least one in `every` steps; without them parts go missing
     that are a small share of the area.
     `band`: the first frequencies of the SDF, relative to SIREN's.
-    `haste`: the charts' rate, relative to `RATES`: in few steps they learn more at a higher one.
     """
 
     seconds: float
@@ -71,11 +72,10 @@ class Effort:
     reviews: int
     every: int
     band: float = 1.0
-    haste: float = 1.0
 
 
 EFFORTS = {
-    "fast": Effort(18.0, 0.8, 3, 800, PROBE_BAND, 2.0),
+    "fast": Effort(18.0, 0.8, 3, 800, PROBE_BAND),
     "balanced": Effort(74.0, 1.0, 9, 800),
     "best": Effort(330.0, 1.2, 15, 4000),
 }
@@ -139,24 +139,19 @@ def sine_tasks(
     errors: Mapping[str, float],
     budgets: Mapping[str, float],
 ) -> list[Task]:
-    """Small sine networks with rounded weights, most of the capacity near the surface, SOAP.
+    """Small sine networks with rounded weights, most of the capacity near the surface.
 
     errors   held-out errors of the probes, by name
     budgets  bits for each network; without one the price decides
     """
     fine = errors["sdf"] > FINE
     seconds = effort.seconds * (FINE_TIME if fine else 1.0)
-    rates = RATES | {"chart": effort.haste * RATES["chart"]}
-    if fine:
-        rates["sdf"] = FINE_RATE
+    rates = RATES | ({"sdf": FINE_RATE} if fine else {})
     tasks = []
     for name, spec in problem.specs(hidden).items():
-        wide = name == "sdf" and spec.hidden[0] >= WIDE and not fine
-        batch = WIDE_BATCH if wide else BATCHES[name]
-        steps = steps_in(seconds * SHARES[name], spec, batch)
+        steps = steps_in(seconds * SHARES[name], spec)
         schedule = replace(
             _schedule(name, steps, effort.band),
-            batch=batch,
             rate=rates[name],
             reviews=max(effort.reviews, steps // effort.every) if name == "sdf" else 0,
         )
@@ -166,15 +161,13 @@ def sine_tasks(
 
 
 def _schedule(name: str, steps: int, band: float) -> Schedule:
-    if name != "sdf":
-        return Schedule(steps, BATCHES[name], RATES[name])
-    return Schedule(steps, BATCHES[name], RATES[name], band=band, last=SDF_LAST)
+    schedule = Schedule(steps, BATCH, RATES[name], memory=MEMORIES[name])
+    return replace(schedule, band=band, last=SDF_LAST) if name == "sdf" else schedule
 
 
-def steps_in(seconds: float, spec: NetworkSpec, batch: int) -> int:
+def steps_in(seconds: float, spec: NetworkSpec) -> int:
     """How many steps take so long on one core of 2.5 GHz (measured; a model of two terms)."""
-    units = sum(spec.hidden) * batch / 2048
-    return max(1, round(seconds / (1.1e-3 + 2.45e-5 * units)))
+    return max(1, round(seconds / (1.1e-3 + 1.2e-8 * BATCH * sum(spec.hidden))))
 
 
 def paper_tasks(charts: int, sets: TrainingSets) -> list[Task]:

@@ -6,11 +6,12 @@ small matrix, so both sides are always preconditioned.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import torch
 from torch import Tensor
+
+from nispcodec.fit.stack import Matrices, Stack
 
 BETA = 0.95
 EPSILON = 1e-8
@@ -30,39 +31,23 @@ class _State:
 
 
 class Soap:
-    """Minimises over a vector of weights; `matrices` say where in it each matrix is, and its rate.
-
-    Call `step` after `backward`. All matrices are moved in one operation, padded with zeros to the
-    largest: they are so small that the number of operations is what takes the time.
-    """
+    """Minimises over `matrices` of a vector of weights. Call `step` after `backward`."""
 
     state: _State | None = None
 
-    def __init__(self, weights: Tensor, matrices: Sequence[tuple[Tensor, float]]) -> None:
-        self.weights = weights
-        rows, columns = (max(matrix.shape[side] for matrix, _ in matrices) for side in (0, 1))
-        places = torch.arange(len(matrices) * rows * columns).view(-1, rows, columns)
-        order = torch.empty(len(weights), dtype=torch.long)
-        for place, (matrix, _) in zip(places, matrices, strict=True):
-            order[matrix.flatten()] = place[: matrix.shape[0], : matrix.shape[1]].flatten()
-        self.order = order.to(weights.device)
-        self.stack = torch.zeros(len(matrices), rows, columns, device=weights.device)
-        rates = torch.tensor([rate for _, rate in matrices], device=weights.device)
-        self.rates = rates[:, None, None]
+    def __init__(self, weights: Tensor, matrices: Matrices) -> None:
+        self.stack = Stack(weights, matrices)
         self.steps = 0
 
     @torch.no_grad()
     def step(self, scale: float) -> None:
         """Move every matrix by its rate times `scale`; the first call only measures."""
-        assert self.weights.grad is not None
-        gradient = self.stack
-        gradient.view(-1).index_copy_(0, self.order, self.weights.grad)
+        gradient = self.stack.gradient()
         if self.state is None:
             self.state = _fresh_state(gradient)
             return
         self.steps += 1
-        moves = (_direction(gradient, self.state, self.steps) * self.rates).view(-1)
-        self.weights.sub_(moves.index_select(0, self.order), alpha=scale)
+        self.stack.move(_direction(gradient, self.state, self.steps), scale)
         if self.steps % REFRESH_EVERY == 0:
             _refresh(self.state)
 

@@ -58,17 +58,20 @@ class Curvature:
     factors(outputs (n, k), batch) -> (n, k, r): each point's second derivatives by its outputs are
     the product of its factor and that one's transpose. `damping` above 0, as a share of their mean,
     is added to the second derivatives by each weight: the less they hold further off, the more.
+    `own`: it is that of the task's loss itself, and not of something that stands for it.
     """
 
     factors: Callable[[Tensor, Batch], Tensor]
     damping: float
+    own: bool = True
 
 
 @dataclass(frozen=True)
 class Rounding:
     """How finely weights are rounded, and by what `curvature` of the loss.
 
-    price   how much a bit a weight less may raise the loss, as its curvature has it
+    price   how much a bit a weight less may raise the loss, as its curvature has it; where that is
+            the loss' own, a share of what the fit is left with: so every asset has its own lambda
     budget  bits that all weights together take; 0: as the price says
     """
 
@@ -81,20 +84,22 @@ class Rounding:
 class Schedule:
     """How long and how fast: `steps` of `batch` points; `rate` is warmed up, then held or lowered.
 
-    `optimiser` is "soap" (rate warmed up, then a cosine down to a hundredth) or "adam" (rate held,
-    as the paper does).
+    `optimiser` is "muon" (for hidden layers, SOAP for all else; rate warmed up, then a cosine down
+    to a hundredth; weights averaged) or "adam" (rate held, as the paper does).
 
     band    frequencies that the first layer starts with, relative to SIREN's
     last    rate of the last layer, relative to the others'
+    memory  of so many of the steps the momentum of hidden layers holds the gradients
     reviews how often samples of a signed distance are sought that are on the wrong side
     """
 
     steps: int
     batch: int = 2048
     rate: float = 1e-3
-    optimiser: str = "soap"
+    optimiser: str = "muon"
     band: float = 1.0
     last: float = 1.0
+    memory: float = 0.01
     reviews: int = 0
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import AbstractContextManager
 from dataclasses import replace
 
@@ -13,9 +13,9 @@ from torch import Tensor
 
 from nispcodec.errors import FitError
 from nispcodec.fit.module import Module
+from nispcodec.fit.optimiser import optimiser
 from nispcodec.fit.prune import Mask
 from nispcodec.fit.rounding import round_weights
-from nispcodec.fit.soap import Soap
 from nispcodec.fit.task import Batch, Rounding, Schedule, Task
 from nispcodec.mesh.misses import reaches
 from nispcodec.network import Network
@@ -23,6 +23,9 @@ from nispcodec.progress import Listener, Progress
 
 WARM_UP = 0.15
 """Share of the steps until the full rate: a fit that starts faster may learn |SDF| for good."""
+
+AVERAGED = 0.01
+"""Weights that are kept are a running mean over about this share of the steps: it is less noisy."""
 
 CLIP = 1.0
 TINY = 1e-12
@@ -40,6 +43,8 @@ RETRIES = 4
 ROUNDINGS, SLIGHT = 3, 1.05
 """Rounding sees some of the samples, and now and then overlooks what costs most: how often it is
 tried at most, with others each time, and by how much the held-out error may rise before that."""
+LARGE = 8_000
+"""Weights from which on rounding takes long, and is tried once."""
 
 
 def train(
@@ -80,7 +85,9 @@ class _Run:
         self.reviews = _reviews(task.schedule)
         self.rate = task.schedule.rate
         self.retries = 0
-        self.move = self._optimiser()
+        self.move = optimiser(self.module, task.schedule)
+        self.fresh = _fresh(task.schedule)
+        self.mean = self._weights()
         self.best_error = math.inf
         self.best = self._weights()
         self.loss = math.nan
@@ -99,7 +106,7 @@ class _Run:
             self.listen(
                 Progress(self.task.name, "fit", done, steps, self.loss, self.error, left, note)
             )
-        self._restore()
+        self._set(self.best)
         if self.task.rounding is not None:
             with core:
                 self._round(self.task.rounding)
@@ -118,21 +125,31 @@ class _Run:
         self._clip()
         self.move(self.rate * _shape(schedule, step))
         self.module.hold()
+        self.mean.lerp_(self.module.weights.detach(), self.fresh)
 
     def _round(self, rounding: Rounding) -> None:
         """Round the best weights, again with other samples where that costs much."""
         steps, before = self.task.schedule.steps, self.best_error
         told = Progress(self.task.name, "quantise", steps, steps, self.loss, before, 0.0)
         tries: list[tuple[float, Tensor, Tensor | None]] = []
-        while len(tries) < ROUNDINGS and all(error > SLIGHT * before for error, *_ in tries):
+        most = ROUNDINGS if len(self.best) < LARGE else 1
+        while len(tries) < most and all(error > SLIGHT * before for error, *_ in tries):
             self.listen(told)
-            self._restore()
-            round_weights(self.module, self.samples, rounding, self.generator)
+            self._set(self.best)
+            round_weights(self.module, self.samples, self._priced(rounding), self.generator)
             tries.append((self._error(), self._weights(), self.module.steps))
         after, self.best, self.module.steps = min(tries, key=lambda each: each[0])
-        self._restore()
+        self._set(self.best)
         note = f"held-out error {before:.3g} before, {after:.3g} after"
         self.listen(replace(told, error=after, note=note))
+
+    @torch.no_grad()
+    def _priced(self, rounding: Rounding) -> Rounding:
+        """With a price that is a rise of the loss, and no share of what the fit is left with."""
+        if not rounding.curvature.own:
+            return rounding
+        left = float(self.task.loss(self.module, self.held_out))
+        return replace(rounding, price=left * rounding.price)
 
     @torch.no_grad()
     def _review(self, strays: bool) -> None:
@@ -171,10 +188,13 @@ class _Run:
         self.loss = LOSS_MEMORY * self.loss + (1 - LOSS_MEMORY) * loss if known else loss
 
     def _check(self, done: int) -> str:
-        """Measure the held-out error; keep the best weights, or go back to them."""
+        """Measure the held-out error of the mean; keep the best, or go back to it."""
+        now = self._weights()
+        self._set(self.mean)
         self.error = self._error()
+        self._set(now)
         if self.error < self.best_error:
-            self.best_error, self.best = self.error, self._weights()
+            self.best_error, self.best = self.error, self.mean.clone()
             return ""
         settled = done >= SETTLED * self.task.schedule.steps
         if math.isfinite(self.error) and not (settled and self.error > DIVERGED * self.best_error):
@@ -188,22 +208,11 @@ class _Run:
                 f"{self.task.name} network: held-out error {self.error:g} after {RETRIES} retries "
                 f"at lower rates, best {self.best_error:g}: the fit does not converge"
             )
-        self._restore()
+        self._set(self.best)
+        self.mean = self.best.clone()
         self.rate /= 2
-        self.move = self._optimiser()
+        self.move = optimiser(self.module, self.task.schedule)
         return f"diverged at step {done}: going on from the best weights at rate {self.rate:g}"
-
-    def _optimiser(self) -> Callable[[float], None]:
-        module = self.module
-        if self.task.schedule.optimiser == "soap":
-            return Soap(module.weights, module.matrices(self.task.schedule.last)).step
-        adam = torch.optim.Adam([module.weights])
-
-        def move(rate: float) -> None:
-            adam.param_groups[0]["lr"] = rate
-            adam.step()
-
-        return move
 
     @torch.no_grad()
     def _error(self) -> float:
@@ -213,13 +222,20 @@ class _Run:
         return self.module.weights.detach().clone()
 
     @torch.no_grad()
-    def _restore(self) -> None:
-        self.module.weights.copy_(self.best)
+    def _set(self, weights: Tensor) -> None:
+        self.module.weights.copy_(weights)
 
 
 def _reviews(schedule: Schedule) -> range:
     every = schedule.steps // (schedule.reviews + 1)
     return range(every, every * schedule.reviews + 1, every) if every else range(0)
+
+
+def _fresh(schedule: Schedule) -> float:
+    """The share of the newest weights in the running mean."""
+    if schedule.optimiser == "adam":
+        return 1.0
+    return 1 / max(1.0, AVERAGED * schedule.steps)
 
 
 def _shape(schedule: Schedule, step: int) -> float:

@@ -25,8 +25,10 @@ from nispcodec.fit.losses import (
     relative_distance_loss,
 )
 from nispcodec.fit.module import Module, snapped
+from nispcodec.fit.muon import Muon, orthogonal
 from nispcodec.fit.parallel import fit_networks, resolve_device
 from nispcodec.fit.soap import Soap
+from nispcodec.fit.stack import Matrices
 from nispcodec.fit.task import Batch, Rounding, Schedule, Task
 from nispcodec.fit.train import train
 from nispcodec.mesh.sample_set import SampleSet
@@ -44,7 +46,7 @@ def ball_samples(count: int, seed: int) -> SampleSet:
     return SampleSet(points, sdf, (points[:, 0] > 0).astype(np.int32), points[:, :2])
 
 
-def sdf_task(steps: int = 300, rate: float = 1e-3, optimiser: str = "soap") -> Task:
+def sdf_task(steps: int = 300, rate: float = 1e-3, optimiser: str = "muon") -> Task:
     spec = NetworkSpec((16, 16), 1, w0=5.0)
     schedule = Schedule(steps, 256, rate, optimiser)
     samples = ball_samples(4000, 0), ball_samples(500, 1)
@@ -69,7 +71,7 @@ def module_of(network: Network) -> Module:
     return module
 
 
-@pytest.mark.parametrize("optimiser", ["soap", "adam"])
+@pytest.mark.parametrize("optimiser", ["muon", "adam"])
 def test_it_learns_a_ball(optimiser: str) -> None:
     seen: list[Progress] = []
     run(sdf_task(rate=3e-3, optimiser=optimiser), seen.append)
@@ -203,19 +205,40 @@ def test_a_device_that_is_not_there_is_an_error(device: str) -> None:
         resolve_device(device)
 
 
-def test_soap_finds_the_minimum_of_a_badly_scaled_quadratic() -> None:
+def _muon(weights: Tensor, matrices: Matrices) -> Muon:
+    return Muon(weights, matrices, 50.0)
+
+
+@pytest.mark.parametrize(("kind", "rate", "decades"), [(Soap, 0.05, 3), (_muon, 0.5, 1)])
+def test_matrices_find_the_minimum_of_a_badly_scaled_quadratic(
+    kind: Callable[[Tensor, Matrices], Soap | Muon], rate: float, decades: int
+) -> None:
     """Two matrices of one shape and one of another, in no order: all are moved together."""
     torch.manual_seed(0)
     first, second, third = torch.arange(54).split([24, 24, 6])
     matrices = [(second.view(4, 6), 1.0), (first.view(4, 6), 1.0), (third.view(3, 2), 0.5)]
     target = torch.randn(54)
-    scales = torch.cat([torch.logspace(-3, 0, 6).repeat(8), torch.ones(6)])
+    scales = torch.cat([torch.logspace(-decades, 0, 6).repeat(8), torch.ones(6)])
     weights = torch.zeros(54, requires_grad=True)
-    soap = Soap(weights, matrices)
+    optimiser = kind(weights, matrices)
     for step in range(600):
         weights.grad = (weights.detach() - target) * scales**2
-        soap.step(0.05 * (1 - step / 600))
+        optimiser.step(rate * (1 - step / 600))
     assert torch.allclose(weights, target, atol=0.02)
+
+
+@pytest.mark.parametrize("shape", [(4, 6), (6, 4), (5, 5)])
+def test_orthogonal_leaves_the_directions_and_evens_the_singular_values(
+    shape: tuple[int, int],
+) -> None:
+    torch.manual_seed(0)
+    left, _, right = torch.linalg.svd(torch.randn(3, *shape), full_matrices=False)
+    values = torch.logspace(-1, 1, 3 * min(shape)).view(3, -1)
+    found = orthogonal(left @ torch.diag_embed(values) @ right)
+    inner = left.mT @ found @ right.mT
+    even = inner.diagonal(dim1=1, dim2=2)
+    assert torch.all((even > 0.6) & (even < 1.3))
+    assert torch.allclose(inner, torch.diag_embed(even), atol=1e-3)
 
 
 def test_reviews_bring_back_a_part_that_few_samples_show() -> None:
@@ -235,7 +258,7 @@ def test_reviews_bring_back_a_part_that_few_samples_show() -> None:
         return float((evaluate(network, points)[:, 0] < 0).mean())
 
     task = replace(
-        sdf_task(400),
+        sdf_task(400, 3e-3),
         spec=NetworkSpec((16, 16), 1, w0=12.0),
         samples=two_balls(8000, 0),
         held_out=two_balls(500, 1),

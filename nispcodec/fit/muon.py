@@ -1,0 +1,57 @@
+"""Muon: momentum, of which every matrix is made orthogonal.
+
+Jordan et al., "Muon: An optimizer for hidden layers in neural networks", 2024.
+"""
+
+from __future__ import annotations
+
+import torch
+from torch import Tensor
+
+from nispcodec.fit.stack import Matrices, Stack
+
+SIZE = 0.7
+"""Root mean square of a move at a rate of 1, without memory. The longer moves are alike, the
+farther they lead: as many add up as are remembered, and the square root of that is made up for."""
+
+QUINTIC = 3.4445, -4.7750, 2.0315
+ROUNDS = 5
+TINY = 1e-12
+
+
+class Muon:
+    """Minimises over `matrices` of a vector of weights. Call `step` after `backward`.
+
+    `remembered` is about how many gradients the momentum holds.
+    """
+
+    momentum: Tensor | None = None
+
+    def __init__(self, weights: Tensor, matrices: Matrices, remembered: float) -> None:
+        self.stack = Stack(weights, matrices)
+        self.memory = 1 - 1 / remembered
+        self.size = SIZE / remembered**0.5
+
+    @torch.no_grad()
+    def step(self, scale: float) -> None:
+        """Move every matrix by its rate times `scale`."""
+        gradient = self.stack.gradient()
+        if self.momentum is None:
+            self.momentum = torch.zeros_like(gradient)
+        self.momentum.mul_(self.memory).add_(gradient)
+        # Nesterov's: as the momentum will be.
+        ahead = gradient + self.memory * self.momentum
+        self.stack.move(orthogonal(ahead), self.size * max(gradient.shape[1:]) ** 0.5 * scale)
+
+
+def orthogonal(matrices: Tensor) -> Tensor:
+    """About the nearest orthogonal matrices: singular values (n, r, c) become 0.7 to 1.2."""
+    wide = matrices.shape[1] <= matrices.shape[2]
+    found = matrices if wide else matrices.mT
+    found = found / (found.norm(dim=(1, 2), keepdim=True) + TINY)
+    first, third, fifth = QUINTIC
+    for _ in range(ROUNDS):
+        square = found @ found.mT
+        factor = torch.baddbmm(square, square, square, beta=third, alpha=fifth)
+        found = torch.baddbmm(found, factor, found, beta=first)
+    return found if wide else found.mT

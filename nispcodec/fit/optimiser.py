@@ -1,0 +1,47 @@
+"""What moves a network's weights by their gradient: Muon and SOAP, or Adam as the paper has it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import torch
+from torch import Tensor
+
+from nispcodec.fit.module import Module
+from nispcodec.fit.muon import Muon
+from nispcodec.fit.soap import Soap
+from nispcodec.fit.task import Schedule
+
+MOST_REMEMBERED = 400.0
+"""Gradients that the momentum of hidden layers holds at most; with many more an SDF goes flat."""
+
+Move = Callable[[float], None]
+"""To be called after `backward`, with the rate."""
+
+
+def optimiser(module: Module, schedule: Schedule) -> Move:
+    """A new one, which remembers nothing yet."""
+    if schedule.optimiser == "adam":
+        return _adam(module.weights)
+    hidden, others = module.matrices(schedule.last)
+    soap = Soap(module.weights, others)
+    if not hidden:
+        return soap.step
+    remembered = min(max(schedule.memory * schedule.steps, 1.0), MOST_REMEMBERED)
+    muon = Muon(module.weights, hidden, remembered)
+
+    def move(rate: float) -> None:
+        soap.step(rate)
+        muon.step(rate)
+
+    return move
+
+
+def _adam(weights: Tensor) -> Move:
+    adam = torch.optim.Adam([weights])
+
+    def move(rate: float) -> None:
+        adam.param_groups[0]["lr"] = rate
+        adam.step()
+
+    return move
