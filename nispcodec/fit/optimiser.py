@@ -12,9 +12,6 @@ from nispcodec.fit.muon import Muon
 from nispcodec.fit.soap import Soap
 from nispcodec.fit.task import Schedule
 
-MOST_REMEMBERED = 400.0
-"""Gradients that the momentum of hidden layers holds at most; with many more an SDF goes flat."""
-
 Move = Callable[[float], None]
 """To be called after `backward`, with the rate."""
 
@@ -27,8 +24,7 @@ def optimiser(module: Module, schedule: Schedule) -> Move:
     soap = Soap(module.weights, others)
     if not hidden:
         return soap.step
-    remembered = min(max(schedule.memory * schedule.steps, 1.0), MOST_REMEMBERED)
-    muon = Muon(module.weights, hidden, remembered)
+    muon = Muon(module.weights, hidden)
 
     def move(rate: float) -> None:
         soap.step(rate)

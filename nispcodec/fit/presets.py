@@ -42,9 +42,6 @@ FINE_RATE = 5e-4
 FINE_TIME = 0.87
 """Assets of fine detail take longer to read and to sample: their fits give that time back."""
 
-MEMORIES = {"sdf": 0.01, "chart": 0.007, "uv": 0.04}
-"""Of the steps: with 0.04 an SDF may go flat."""
-
 EMBEDDING = 4
 """Numbers a chart that the UV network is told it by."""
 
@@ -77,7 +74,7 @@ class Effort:
 EFFORTS = {
     "fast": Effort(18.0, 0.8, 3, 800, PROBE_BAND),
     "balanced": Effort(74.0, 1.0, 9, 800),
-    "best": Effort(330.0, 1.2, 15, 4000),
+    "best": Effort(560.0, 1.2, 15, 4000),
 }
 
 
@@ -161,7 +158,7 @@ def sine_tasks(
 
 
 def _schedule(name: str, steps: int, band: float) -> Schedule:
-    schedule = Schedule(steps, BATCH, RATES[name], memory=MEMORIES[name])
+    schedule = Schedule(steps, BATCH, RATES[name])
     return replace(schedule, band=band, last=SDF_LAST) if name == "sdf" else schedule
 
 

@@ -89,7 +89,6 @@ class Schedule:
 
     band    frequencies that the first layer starts with, relative to SIREN's
     last    rate of the last layer, relative to the others'
-    memory  of so many of the steps the momentum of hidden layers holds the gradients
     reviews how often samples of a signed distance are sought that are on the wrong side
     """
 
@@ -99,7 +98,6 @@ class Schedule:
     optimiser: str = "muon"
     band: float = 1.0
     last: float = 1.0
-    memory: float = 0.01
     reviews: int = 0
 
 
