@@ -32,6 +32,7 @@ from nispcodec.fit.parallel import fit_networks
 from nispcodec.fit.presets import (
     BATCH,
     EFFORTS,
+    MEMORIES,
     RATES,
     SHARES,
     paper_tasks,
@@ -103,7 +104,7 @@ def _schedule(model: NispModel, sets: TrainingSets) -> Schedule:
         tasks = paper_tasks(len(model.document.charts), sets)
         return next(task.schedule for task in tasks if task.name == "uv")
     seconds, spec = EFFORTS[preset].seconds * SHARES["uv"], model.document.networks["uv"].spec
-    return Schedule(steps_in(seconds, spec), BATCH, RATES["uv"])
+    return Schedule(steps_in(seconds, spec), BATCH, RATES["uv"], memory=MEMORIES["uv"])
 
 
 def _of_size(weights: int) -> NetworkSpec:

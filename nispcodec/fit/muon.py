@@ -14,9 +14,9 @@ SIZE = 0.7
 """Root mean square of a move at a rate of 1, without memory. The longer moves are alike, the
 farther they lead: as many add up as are remembered, and the square root of that is made up for."""
 
-SHARE, LEAST, MOST = 0.03, 20.0, 400.0
-"""The momentum holds about so many of all gradients so far: the more it holds the nearer the fit
-ends, but with many from the start it ends in bad places."""
+LEAST, MOST = 20.0, 400.0
+"""How many gradients the momentum holds. The more, the nearer the fit ends; but with many from the
+start it ends in bad places."""
 
 QUINTIC = 3.4445, -4.7750, 2.0315
 ROUNDS = 5
@@ -24,13 +24,17 @@ TINY = 1e-12
 
 
 class Muon:
-    """Minimises over `matrices` of a vector of weights. Call `step` after `backward`."""
+    """Minimises over `matrices` of a vector of weights. Call `step` after `backward`.
+
+    The momentum holds about this `share` of all gradients so far.
+    """
 
     momentum: Tensor | None = None
     steps = 0
 
-    def __init__(self, weights: Tensor, matrices: Matrices) -> None:
+    def __init__(self, weights: Tensor, matrices: Matrices, share: float) -> None:
         self.stack = Stack(weights, matrices)
+        self.share = share
 
     @torch.no_grad()
     def step(self, scale: float) -> None:
@@ -39,7 +43,7 @@ class Muon:
         if self.momentum is None:
             self.momentum = torch.zeros_like(gradient)
         self.steps += 1
-        held = min(max(SHARE * self.steps, LEAST), MOST)
+        held = min(max(self.share * self.steps, LEAST), MOST)
         memory = 1 - 1 / held
         self.momentum.mul_(memory).add_(gradient)
         # Nesterov's: as the momentum will be.

@@ -24,7 +24,7 @@ def optimiser(module: Module, schedule: Schedule) -> Move:
     soap = Soap(module.weights, others)
     if not hidden:
         return soap.step
-    muon = Muon(module.weights, hidden)
+    muon = Muon(module.weights, hidden, schedule.memory)
 
     def move(rate: float) -> None:
         soap.step(rate)

@@ -39,8 +39,10 @@ SHARES = {"sdf": 1.0, "chart": 0.35, "uv": 0.47}
 
 RATES = {"sdf": 1e-3, "chart": 3e-3, "uv": 1e-3}
 FINE_RATE = 5e-4
-FINE_TIME = 0.87
+FINE_TIME = 0.8
 """Assets of fine detail take longer to read and to sample: their fits give that time back."""
+
+MEMORIES = {"sdf": 0.01, "chart": 0.01, "uv": 0.04}
 
 EMBEDDING = 4
 """Numbers a chart that the UV network is told it by."""
@@ -158,7 +160,7 @@ def sine_tasks(
 
 
 def _schedule(name: str, steps: int, band: float) -> Schedule:
-    schedule = Schedule(steps, BATCH, RATES[name])
+    schedule = Schedule(steps, BATCH, RATES[name], memory=MEMORIES[name])
     return replace(schedule, band=band, last=SDF_LAST) if name == "sdf" else schedule
 
 

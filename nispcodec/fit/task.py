@@ -89,6 +89,7 @@ class Schedule:
 
     band    frequencies that the first layer starts with, relative to SIREN's
     last    rate of the last layer, relative to the others'
+    memory  share of the gradients so far that the momentum of hidden layers holds
     reviews how often samples of a signed distance are sought that are on the wrong side
     """
 
@@ -98,6 +99,7 @@ class Schedule:
     optimiser: str = "muon"
     band: float = 1.0
     last: float = 1.0
+    memory: float = 0.01
     reviews: int = 0
 
 

@@ -8,6 +8,7 @@ import select
 import threading
 from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 import pytest
@@ -204,9 +205,11 @@ def test_a_device_that_is_not_there_is_an_error(device: str) -> None:
         resolve_device(device)
 
 
-@pytest.mark.parametrize(("kind", "rate", "decades"), [(Soap, 0.05, 3), (Muon, 0.5, 1)])
+@pytest.mark.parametrize(
+    ("kind", "rate", "decades"), [(Soap, 0.05, 3), (partial(Muon, share=0.1), 0.5, 1)]
+)
 def test_matrices_find_the_minimum_of_a_badly_scaled_quadratic(
-    kind: type[Soap | Muon], rate: float, decades: int
+    kind: Callable[..., Soap | Muon], rate: float, decades: int
 ) -> None:
     """Two matrices of one shape and one of another, in no order: all are moved together."""
     torch.manual_seed(0)
