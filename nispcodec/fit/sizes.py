@@ -39,7 +39,7 @@ class Model:
 
 
 MODELS = {
-    "sdf": Model(33, 1.0e-3, 0.7, 22, 36),
+    "sdf": Model(33, 1.0e-3, 0.7, 22, 34),
     "chart": Model(13.2, 0.03, 0.42, 16, 38),
     "uv": Model(19.5, 9.3e-4, 0.6, 12, 34),
 }
