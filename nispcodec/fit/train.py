@@ -133,10 +133,11 @@ class _Run:
         told = Progress(self.task.name, "quantise", steps, steps, self.loss, before, 0.0)
         tries: list[tuple[float, Tensor, Tensor | None]] = []
         most = ROUNDINGS if len(self.best) < LARGE else 1
+        priced = self._priced(rounding)
         while len(tries) < most and all(error > SLIGHT * before for error, *_ in tries):
             self.listen(told)
             self._set(self.best)
-            round_weights(self.module, self.samples, self._priced(rounding), self.generator)
+            round_weights(self.module, self.samples, priced, self.generator)
             tries.append((self._error(), self._weights(), self.module.steps))
         after, self.best, self.module.steps = min(tries, key=lambda each: each[0])
         self._set(self.best)
