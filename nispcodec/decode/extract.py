@@ -12,8 +12,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from nispcodec.decode.cores import on_every_core
 from nispcodec.decode.evaluate import evaluate, gradient
-from nispcodec.decode.grid import BLOCK, LIMIT, TOGETHER, Floats, Grid, Ids, Numbers
+from nispcodec.decode.grid import BLOCK, LIMIT, Floats, Grid, Ids, Numbers, together
 from nispcodec.decode.marching import CORNERS, EDGES, polygonise
 from nispcodec.decode.newton import onto_surface
 from nispcodec.network import Network
@@ -111,20 +112,21 @@ def _sampled(grid: Grid, blocks: Ids) -> tuple[Ids, Floats, Numbers]:
 
     Where it left them it would end in a hole.
     """
-    values, points = grid.sampled(blocks)
-    more = _behind(grid, blocks, values)
-    while len(more):
-        more_values, more_points = grid.sampled(more)
-        blocks = np.concatenate([blocks, more])
-        values = np.concatenate([values, more_values])
-        points = np.concatenate([points, more_points])
-        more = _behind(grid, more, more_values)
+    parts = [(blocks, *grid.sampled(blocks))]
+    while len(more := _behind(grid, *parts[-1][:2])):
+        parts.append((more, *grid.sampled(more)))
+    blocks, values, points = map(np.concatenate, zip(*parts, strict=True))
     return blocks, values, points
 
 
 def _behind(grid: Grid, blocks: Ids, values: Floats) -> Ids:
     """Blocks (b, 3) of the cube that were not sampled, and lie behind a face that is crossed."""
-    inside = _bits((values < 0).reshape(-1, (BLOCK + 1) ** 3))
+    inside = np.empty(len(values), np.uint32)
+
+    def look(part: slice) -> None:
+        inside[part] = _bits((values[part] < 0).reshape(-1, (BLOCK + 1) ** 3))
+
+    on_every_core(look, together(len(values)))
     corners = _lattice(BLOCK + 1)
     beyond = []
     for axis in range(3):
@@ -135,7 +137,9 @@ def _behind(grid: Grid, blocks: Ids, values: Floats) -> Ids:
             place = neighbours[:, axis]
             beyond.append(neighbours[(place >= 0) & (place < grid.across)])
     wanted = np.concatenate(beyond)
-    return np.unique(wanted[~grid.has_sampled(wanted)], axis=0)
+    cube = (grid.across,) * 3
+    missing = np.unique(np.ravel_multi_index(tuple(wanted[~grid.has_sampled(wanted)].T), cube))
+    return np.stack(np.unravel_index(missing, cube), axis=1)
 
 
 def _bits(flags: NDArray[np.bool_]) -> NDArray[np.uint32]:
@@ -149,24 +153,34 @@ def _polygons(values: Floats, points: Numbers) -> tuple[Ids, NDArray[np.int8], N
     An edge is known by the number of its low point, so that no sorting is needed to find the same
     edge in several cells.
     """
-    cases = _cases(values)
-    cells = np.flatnonzero((cases > 0) & (cases < 255))
-    first = _first_corners(cells)
-    lows, axes = np.array([low for low, _ in EDGES]), np.array([axis for _, axis in EDGES], np.int8)
-    ends = CORNERS[lows] @ STRIDES
+    ends = CORNERS[[low for low, _ in EDGES]] @ STRIDES
+    axes = np.array([axis for _, axis in EDGES], np.int8)
     table = np.zeros(3 * (int(points.max(initial=0)) + 1), np.int32)
-    edges = [np.empty((0, 3), np.int32)]
-    for start in range(0, len(cells), TOGETHER):
-        some = slice(start, start + TOGETHER)
-        owners, triangles = polygonise(cases[cells[some]])
-        places = first[some][owners, None] + ends[triangles]
-        edges.append(3 * points.ravel()[places] + axes[triangles])
-        # Where an edge's low end is, and one, so that 0 is an edge not crossed.
-        table[edges[-1]] = places + 1
+    parts = list(enumerate(together(len(values))))
+    edges = [np.empty((0, 3), np.int32)] * max(1, len(parts))
+
+    def polygons(numbered: tuple[int, slice]) -> None:
+        number, part = numbered
+        cases = _cases(values[part])
+        cells = np.flatnonzero((cases > 0) & (cases < 255))
+        owners, triangles = polygonise(cases[cells])
+        first = _first_corners(cells) + part.start * (BLOCK + 1) ** 3
+        places = first[owners, None] + ends[triangles]
+        edges[number] = 3 * points.ravel()[places] + axes[triangles]
+        # Where an edge's low end is, and one, so that 0 is an edge not crossed. Blocks that share
+        # the edge know it by places of their own, whichever is kept: they hold the same.
+        table[edges[number]] = places + 1
+
+    on_every_core(polygons, parts)
     crossed = np.flatnonzero(table)
     lowest = table[crossed] - 1
     table[crossed] = np.arange(len(crossed))
-    faces = np.concatenate([table[some] for some in edges])
+
+    def renumber(number: int) -> None:
+        edges[number] = table[edges[number]]
+
+    on_every_core(renumber, range(len(edges)))
+    faces = np.concatenate(edges)
     return lowest.astype(np.int64), (crossed % 3).astype(np.int8), faces
 
 
@@ -190,8 +204,16 @@ def _crossings(
     blocks: Ids, values: Floats, places: Ids, axes: NDArray[np.int8], cell: float
 ) -> Floats:
     """Where the field crosses zero along each edge, if it were linear."""
-    low, high = values[places], values[places + STRIDES[axes]]
-    block, inner = np.divmod(places, (BLOCK + 1) ** 3)
-    grid = (blocks[block] * BLOCK + _lattice(BLOCK + 1)[inner]).astype(np.float64)
-    grid[np.arange(len(grid)), axes] += np.clip(low / (low - high), CLEARANCE, 1 - CLEARANCE)
-    return (grid * cell - LIMIT).astype(np.float32)
+    lattice = _lattice(BLOCK + 1)
+    found = np.empty((len(places), 3), np.float32)
+
+    def cross(part: slice) -> None:
+        lows, along = places[part], axes[part]
+        low, high = values[lows], values[lows + STRIDES[along]]
+        block, inner = np.divmod(lows, (BLOCK + 1) ** 3)
+        grid = (blocks[block] * BLOCK + lattice[inner]).astype(np.float64)
+        grid[np.arange(len(grid)), along] += np.clip(low / (low - high), CLEARANCE, 1 - CLEARANCE)
+        found[part] = grid * cell - LIMIT
+
+    on_every_core(cross, together(len(places)))
+    return found

@@ -10,6 +10,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from nispcodec.decode.cores import on_every_core
 from nispcodec.decode.evaluate import evaluate
 from nispcodec.decode.marching import CORNERS
 from nispcodec.network import Network
@@ -26,6 +27,11 @@ OWN = np.indices(OWN_POINTS.shape).reshape(3, -1).T
 Ids = NDArray[np.int64]
 Floats = NDArray[np.float32]
 Numbers = NDArray[np.int32]
+
+
+def together(count: int) -> list[slice]:
+    """The parts in which so many blocks or points are dealt with."""
+    return [slice(start, start + TOGETHER) for start in range(0, count, TOGETHER)]
 
 
 class Grid:
@@ -47,13 +53,15 @@ class Grid:
         self._evaluate(owners)
         values = np.empty((len(blocks), *(BLOCK + 1,) * 3), np.float32)
         points = np.empty(values.shape, np.int32)
-        for start in range(0, len(blocks), TOGETHER):
-            part = slice(start, start + TOGETHER)
+
+        def take(part: slice) -> None:
             for corner, owner in zip(CORNERS, owners, strict=True):
                 mine = (part, *(slice(BLOCK, None) if c else slice(BLOCK) for c in corner))
                 theirs = _taken(corner)
                 values[mine] = self._field[:, *theirs][owner[part]]
                 points[mine] = BLOCK**3 * owner[part, None, None, None] + OWN_POINTS[theirs]
+
+        on_every_core(take, together(len(blocks)))
         return values, points
 
     def has_sampled(self, blocks: Ids) -> NDArray[np.bool_]:
@@ -74,12 +82,15 @@ class Grid:
             wanted[:, *_taken(corner)][owner] = True
         asked = np.flatnonzero(wanted & ~self._known)
         self._known |= wanted
-        for start in range(0, len(asked), TOGETHER):
-            some = asked[start : start + TOGETHER]
-            number, inner = np.divmod(some, BLOCK**3)
+        field = self._field.ravel()
+
+        def ask(part: slice) -> None:
+            number, inner = np.divmod(asked[part], BLOCK**3)
             grid = self._numbering.blocks[number] * BLOCK + OWN[inner]
             points = (grid * self._cell - LIMIT).astype(np.float32)
-            self._field.ravel()[some] = evaluate(self._network, points)[:, 0]
+            field[asked[part]] = evaluate(self._network, points)[:, 0]
+
+        on_every_core(ask, together(len(asked)))
 
 
 def _taken(corner: Ids) -> tuple[slice, ...]:
@@ -111,7 +122,14 @@ class _Numbering:
 
     def find(self, wanted: Ids) -> Numbers:
         """The numbers (n,) of blocks (n, 3), -1 for those not met."""
-        return self._members[self._octets[*(wanted >> 1).T], *(wanted & 1).T]
+        numbers = np.empty(len(wanted), np.int32)
+
+        def look_up(part: slice) -> None:
+            octets = self._octets[*(wanted[part] >> 1).T]
+            numbers[part] = self._members[octets, *(wanted[part] & 1).T]
+
+        on_every_core(look_up, together(len(wanted)))
+        return numbers
 
     def _add_octets(self, wanted: Ids) -> None:
         absent = wanted[self._octets[*wanted.T] == 0]

@@ -5,7 +5,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from nispcodec.decode.cores import on_every_core
 from nispcodec.decode.evaluate import evaluate, gradient
+from nispcodec.decode.grid import together
 from nispcodec.network import Network
 
 Floats = NDArray[np.float32]
@@ -18,6 +20,16 @@ def onto_surface(network: Network, points: Floats, reach: float, steps: int) -> 
     taken only where it brings the field nearer to 0, and no point moves farther than `reach` along
     an axis: where the field is no distance field, points stay where they are.
     """
+    result = np.empty_like(points)
+
+    def move(part: slice) -> None:
+        result[part] = _moved(network, points[part], reach, steps)
+
+    on_every_core(move, together(len(points)))
+    return result
+
+
+def _moved(network: Network, points: Floats, reach: float, steps: int) -> Floats:
     values, slopes = gradient(network, points)
     steepness = (slopes * slopes).sum(axis=1, keepdims=True)
     direction = slopes / np.maximum(steepness, np.float32(1e-6))
