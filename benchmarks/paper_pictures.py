@@ -53,6 +53,7 @@ from nispcodec.network import Network, NetworkSpec
 from nispcodec.output import write_atomic
 from nispcodec.progress import Progress
 from nispcodec.render.camera import Camera, turntable
+from nispcodec.render.field import OPENING
 from nispcodec.render.fragments import Floats, Indices, Scene
 from nispcodec.render.images import image_bytes
 from nispcodec.render.views import scene_of
@@ -151,15 +152,15 @@ class Sight:
 
 
 def sight(scene: Scene, camera: Camera) -> Sight:
-    """What the camera sees of the scene."""
+    """What the camera sees of the scene, nothing through openings."""
     middle = (np.arange(SIZE) + 0.5) / SIZE
     x, y = np.meshgrid(middle, middle)
     directions = camera.directions(x.ravel(), y.ravel())
     origins = np.tile(camera.eye.astype(np.float32), (len(directions), 1))
     found = scene.cast(origins, directions, 0).fragments
-    return Sight(
-        found.rays, origins[found.rays] + found.distances[:, None] * directions[found.rays]
-    )
+    shown = np.array([material is not OPENING for material in scene.materials])[found.materials]
+    rays, distances = found.rays[shown], found.distances[shown]
+    return Sight(rays, origins[rays] + distances[:, None] * directions[rays])
 
 
 def compared(

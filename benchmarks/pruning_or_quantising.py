@@ -1,14 +1,15 @@
-"""Small sine networks pruned, quantised, or both: bytes in a file against held-out error.
+"""Small sine networks pruned, quantised, both, or narrower: bytes in a file and held-out error.
 
     python -m benchmarks.pruning_or_quantising --assets ../shared/assets [--table]
 
 SDF and UV networks of each asset and seed: float16 and lottery tickets of it at `RATES`, rounded
-at `PRICES`, and both: the tickets' masks held, and what is left rounded at `BOTH`. All trainings
-have as many steps and start from the same weights. Kept case by case: an interrupted run goes on.
+at `PRICES`, and both: the tickets' masks held, and what is left rounded at `BOTH`; and networks of
+`WIDTHS`, rounded as the presets do. All trainings have as many steps, and those of one width start
+from the same weights. Kept case by case: an interrupted run goes on.
 The default takes a quarter of an hour of one core, and leaves all networks far from what they can
 reach; `--steps 4000` says more. `--table` trains nothing. In the table each setting is beside
 float16, unpruned, and beside the curve of quantising alone: bytes at the same error, below 1 where
-pruning pays.
+pruning, or a narrower network, pays.
 """
 
 from __future__ import annotations
@@ -39,6 +40,7 @@ from nispcodec.fit.losses import (
 )
 from nispcodec.fit.presets import PRICES as PRESET_PRICES
 from nispcodec.fit.prune import Mask
+from nispcodec.fit.sizes import even_width
 from nispcodec.fit.task import Rounding, Schedule, Task
 from nispcodec.fit.tickets import tickets
 from nispcodec.fit.train import train
@@ -58,6 +60,8 @@ RATES = (0.3, 0.5, 0.7)
 PRICES = (1.0, 6.0, 36.0)
 BOTH = 6.0
 """Times what the presets pay for a bit."""
+WIDTHS = (0.75, 0.5)
+"""Of the widths of all others."""
 
 STEPS, BATCH = 1500, 1024
 SAMPLER_SEED = 0
@@ -88,20 +92,22 @@ def error(network: Network, test: SampleSet) -> float:
 
 
 def measure(task: Task, seed: int) -> list[Record]:
-    """Every setting of one network: {"rate", "price", "bytes", "error"}."""
+    """Every setting of one network: {"rate", "price", "width", "bytes", "error"}."""
     points: list[Record] = []
     masks: dict[float, Mask] = {}
 
-    def fitted(mask: Mask, price: float) -> Network:
+    def fitted(mask: Mask | None, price: float, width: float = 1.0) -> Network:
         rounding = Rounding(CURVATURES[task.name], price * PRESET_PRICES[task.name])
-        priced = replace(task, rounding=rounding if price else None)
+        hidden = tuple(even_width(width * each) for each in task.spec.hidden)
+        spec = replace(task.spec, hidden=hidden)
+        priced = replace(task, spec=spec, rounding=rounding if price else None)
         return train(priced, seed, "cpu", nullcontext(), silent, mask)
 
-    def add(network: Network, rate: float, price: float) -> None:
-        found = error(network, task.held_out)
-        size = stored(network, None)
-        points.append({"rate": rate, "price": price, "bytes": size, "error": found})
-        click.echo(f"  {rate:4.0%} price {price:<5g} {size:6} bytes, {found:.2e}", err=True)
+    def add(network: Network, rate: float, price: float, width: float = 1.0) -> None:
+        setting = {"rate": rate, "price": price, "width": width}
+        found = {"bytes": stored(network, None), "error": error(network, task.held_out)}
+        points.append({**setting, **found})
+        click.echo(f"  {setting} {found}", err=True)
 
     def trained(mask: Mask, rate: float) -> Network:
         masks[rate] = mask
@@ -114,6 +120,8 @@ def measure(task: Task, seed: int) -> list[Record]:
     settings = [(0.0, price) for price in PRICES] + [(rate, BOTH) for rate in RATES]
     for rate, price in settings:
         add(fitted(masks[rate], price), rate, price)
+    for width in WIDTHS:
+        add(fitted(None, 1.0, width), 0.0, 1.0, width)
     return points
 
 
@@ -160,7 +168,11 @@ def _write(path: Path, cases: list[Record]) -> None:
 
 def against_quantised(case: Record, point: Record) -> float:
     """Bytes of a point relative to quantising alone at the same error; NaN out of its reach."""
-    alone = [(each["bytes"], each["error"]) for each in case["points"] if each["rate"] == 0]
+    alone = [
+        (each["bytes"], each["error"])
+        for each in case["points"]
+        if (each["rate"], each["width"]) == (0, 1)
+    ]
     curve = front(alone)[::-1]
     sizes, errors = np.log(curve).T
     same = np.interp(np.log(point["error"]), errors, sizes, left=np.nan, right=np.nan)
@@ -169,8 +181,9 @@ def against_quantised(case: Record, point: Record) -> float:
 
 def table(cases: Sequence[Record]) -> Iterator[str]:
     """Markdown: geometric means over the cases of each network."""
-    yield "| network | pruned | price | bytes | error / float16 | bytes / quantised alone | cases |"
-    yield "|---|---|---|---|---|---|---|"
+    columns = "network", "pruned", "width", "price", "bytes", "error / float16"
+    yield f"| {' | '.join(columns)} | bytes / quantised alone | cases |"
+    yield "|---|---|---|---|---|---|---|---|"
     for network in NETWORKS:
         alike = [case for case in cases if case["network"] == network]
         for index in range(len(alike[0]["points"]) if alike else 0):
@@ -188,8 +201,8 @@ def _row(network: str, cases: Sequence[Record], index: int) -> str:
     beside = f"{_mean(reached):.2f} ({len(reached)})" if reached else "-"
     size, price = _mean([point["bytes"] for point in points]), points[0]["price"]
     return (
-        f"| {network} | {points[0]['rate']:.0%} | {price or 'float16'} | {size:,.0f} "
-        f"| {_mean(worse):.2f} | {beside} | {len(cases)} |"
+        f"| {network} | {points[0]['rate']:.0%} | {points[0]['width']:.0%} | {price or 'float16'} "
+        f"| {size:,.0f} | {_mean(worse):.2f} | {beside} | {len(cases)} |"
     )
 
 

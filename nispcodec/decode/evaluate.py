@@ -45,13 +45,16 @@ def evaluate(network: Network, points: Floats, charts: Integers | None = None) -
     return result
 
 
-def classify(network: Network, points: Floats) -> Charts:
-    """The number of the largest output at each point: (n, 3) float32 -> (n,) int32."""
+def classify(network: Network, points: Floats, among: int | None = None) -> Charts:
+    """The number of the largest output at each point: (n, 3) float32 -> (n,) int32.
+
+    `among`: only so many outputs, the first ones, are looked at.
+    """
     result = np.empty(len(points), np.int32)
     forward = _Forward(network)
 
     def block(part: slice) -> None:
-        result[part] = forward(points[part], None).argmax(axis=0)
+        result[part] = forward(points[part], None)[:among].argmax(axis=0)
 
     _in_blocks(block, network.spec, len(points))
     return result

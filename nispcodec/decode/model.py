@@ -69,10 +69,11 @@ class NispModel:
         """Base colour (n, 4) float32 RGBA in [0, 1]: RGB is sRGB-encoded, alpha linear.
 
         The base colour texture at the point's UV, filtered and wrapped as its material says, times
-        the material's factor; the factor alone where there is no texture or no UV.
+        the material's factor; the factor alone where there is no texture or no UV. Openings have no
+        colour: points there get that of the likeliest chart of the asset.
         """
         normalised = self._normalised(points, frame)
-        charts = self._charts(normalised)
+        charts = self._charts(normalised, len(self.document.charts) - self.document.charts.openings)
         uvs = self._uv(normalised, charts)
         table = self.document.charts
         # A face without UV looks nothing up: its material shows its factor, key -1 - material.
@@ -116,11 +117,11 @@ class NispModel:
 
         return textured_mesh(self.document, resolution, faces, error, keep_spurious)[0]
 
-    def _charts(self, normalised: Floats) -> Integers:
+    def _charts(self, normalised: Floats, among: int | None = None) -> Integers:
         network = self.document.chart
         if network is None:
             return np.zeros(len(normalised), np.int32)
-        return classify(network, normalised)
+        return classify(network, normalised, among)
 
     def _uv(self, normalised: Floats, charts: NDArray[np.integer]) -> Floats:
         from nispcodec.decode.atlas import asset_uv

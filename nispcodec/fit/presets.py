@@ -215,6 +215,6 @@ def _samples(sets: TrainingSets) -> dict[str, tuple[SampleSet, SampleSet]]:
     """What each network learns from and what it is judged by."""
     return {
         "sdf": (sets.distance, sets.held_distance),
-        "chart": (sets.skin, sets.held_skin),
+        "chart": (sets.charts, sets.held_skin),
         "uv": (sets.textured, sets.held_skin),
     }

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from nispcodec.asset import FloatArray, TexturedMesh
 from nispcodec.document import ChartTable, Frame
 from nispcodec.mesh.charts import Charts, split_charts
+from nispcodec.mesh.confusion import confusion
 from nispcodec.mesh.detail import detail
 from nispcodec.mesh.distance import Closest, DistanceField
 from nispcodec.mesh.merge import Cover, merge_charts
@@ -119,10 +120,16 @@ class Sampler:
 
     def detailed(self, samples: SampleSet, count: int) -> SampleSet:
         """`count` samples again, the more the texture changes there; 0 where it never does."""
-        change = detail(self._mesh, self.table, samples)
-        if not change.any():
+        return self._again(samples, detail(self._mesh, self.table, samples), count)
+
+    def confusing(self, samples: SampleSet, count: int) -> SampleSet:
+        """`count` samples again, the more a wrong chart is seen there; 0 where it never is."""
+        return self._again(samples, confusion(self._mesh, self.table, samples), count)
+
+    def _again(self, samples: SampleSet, wanted: FloatArray, count: int) -> SampleSet:
+        if not wanted.any():
             return samples[:0]
-        return samples[self._random.choice(len(samples), count, p=change / change.sum())]
+        return samples[self._random.choice(len(samples), count, p=wanted / wanted.sum())]
 
     def label(self, points: FloatArray, signed: bool = True) -> SampleSet:
         """Distance, chart and UV at each point's closest surface point (paper, eq. 2)."""

@@ -26,6 +26,7 @@ WIDE_COUNT = 40_000
 UNLIKE_COUNT = 80_000
 SKIN_COUNT = 250_000
 DETAIL_COUNT = 110_000
+CONFUSING_COUNT = 125_000
 MEMBRANE_COUNT = 12_000
 HELD_OUT_COUNT = 20_000
 PAPER_COUNT = 1_000_000
@@ -33,10 +34,10 @@ PAPER_COUNT = 1_000_000
 
 @dataclass(frozen=True)
 class TrainingSets:
-    """Samples to fit the SDF (`distance`), charts (`skin`) and UVs (`textured`); held-out ones."""
+    """Samples to fit the SDF (`distance`), charts and UVs (`textured`); held-out ones."""
 
     distance: SampleSet
-    skin: SampleSet
+    charts: SampleSet
     held_distance: SampleSet
     held_skin: SampleSet
     textured: SampleSet
@@ -45,7 +46,8 @@ class TrainingSets:
 def training_sets(sampler: Sampler) -> TrainingSets:
     """Near the surface for the most part; the whole cube for the sign far away.
 
-    UVs learn from some points twice, where the texture has detail.
+    UVs learn from some points again where the texture has detail, charts where they show different
+    colours.
     """
     distance = (
         sampler.near(NEAR_COUNT, 1 / BETA),
@@ -59,7 +61,7 @@ def training_sets(sampler: Sampler) -> TrainingSets:
     )
     return TrainingSets(
         distance=SampleSet.joined(distance),
-        skin=skin,
+        charts=SampleSet.joined((skin, sampler.confusing(skin, CONFUSING_COUNT))),
         held_distance=sampler.near(HELD_OUT_COUNT, SKIN),
         held_skin=sampler.surface(HELD_OUT_COUNT),
         textured=SampleSet.joined((skin, sampler.detailed(skin, DETAIL_COUNT))),

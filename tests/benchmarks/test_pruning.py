@@ -58,11 +58,16 @@ def test_the_tables_name_what_was_measured() -> None:
 
 def case() -> dict[str, object]:
     """Quantising alone halves the bytes for a tenth more error each time."""
-    alone = [(0.0, 4000, 1.0), (0.005, 2000, 1.1), (0.03, 1000, 1.21)]
-    points = [{"rate": 0.0, "price": p, "bytes": b, "error": e} for p, b, e in alone]
-    points.append({"rate": 0.5, "price": 0.03, "bytes": 800, "error": 1.21})
-    points.append({"rate": 0.7, "price": 0.03, "bytes": 700, "error": 1.5})
-    return {"network": "sdf", "points": points}
+    settings = [
+        (0.0, 0.0, 1.0, 4000, 1.0),
+        (0.0, 0.005, 1.0, 2000, 1.1),
+        (0.0, 0.03, 1.0, 1000, 1.21),
+        (0.5, 0.03, 1.0, 800, 1.21),
+        (0.7, 0.03, 1.0, 700, 1.5),
+        (0.0, 0.005, 0.5, 500, 1.1),
+    ]
+    names = "rate", "price", "width", "bytes", "error"
+    return {"network": "sdf", "points": [dict(zip(names, each, strict=True)) for each in settings]}
 
 
 def test_bytes_are_compared_at_the_same_error() -> None:
@@ -70,6 +75,7 @@ def test_bytes_are_compared_at_the_same_error() -> None:
     assert against_quantised(case(), points[1]) == pytest.approx(1)
     assert against_quantised(case(), points[3]) == pytest.approx(0.8)
     assert math.isnan(against_quantised(case(), points[4]))
+    assert against_quantised(case(), points[5]) == pytest.approx(0.25)
     assert against_quantised(case(), points[3] | {"error": 1.1**1.5}) == pytest.approx(
         800 / math.sqrt(2000 * 1000)
     )
@@ -77,7 +83,8 @@ def test_bytes_are_compared_at_the_same_error() -> None:
 
 def test_the_table_has_a_row_for_every_setting() -> None:
     rows = list(table([case(), case()]))
-    assert len(rows) == 2 + 5
-    assert rows[2] == "| sdf | 0% | float16 | 4,000 | 1.00 | 1.00 (2) | 2 |"
-    assert rows[5] == "| sdf | 50% | 0.03 | 800 | 1.21 | 0.80 (2) | 2 |"
-    assert rows[6] == "| sdf | 70% | 0.03 | 700 | 1.50 | - | 2 |"
+    assert len(rows) == 2 + 6
+    assert rows[2] == "| sdf | 0% | 100% | float16 | 4,000 | 1.00 | 1.00 (2) | 2 |"
+    assert rows[5] == "| sdf | 50% | 100% | 0.03 | 800 | 1.21 | 0.80 (2) | 2 |"
+    assert rows[6] == "| sdf | 70% | 100% | 0.03 | 700 | 1.50 | - | 2 |"
+    assert rows[7] == "| sdf | 0% | 50% | 0.005 | 500 | 1.10 | 0.25 (2) | 2 |"

@@ -11,6 +11,7 @@ from nispcodec.asset import Material
 from nispcodec.decode.model import NispModel
 from nispcodec.document import ChartTable, Frame
 from nispcodec.errors import QueryError
+from nispcodec.texture import base_color, decode_image
 from tests import tiny
 from tests.decode.surfaces import assert_closed, assert_sound
 
@@ -95,6 +96,16 @@ def test_color_without_uv_ignores_the_texture() -> None:
     materials = (Material("a", (0.0, 1.0, 0.0, 0.5), maps=plain.materials[0].maps),) * 2
     color = NispModel(replace(plain, charts=table, materials=materials)).color([[-5.0, 0, 0]])
     np.testing.assert_allclose(color, [[0, 1, 0, 0.5]], atol=1e-6)
+
+
+def test_openings_have_no_colour_of_their_own(model: NispModel, points: np.ndarray) -> None:
+    table = replace(model.document.charts, has_uv=np.array([True, False]), openings=True)
+    opened = NispModel(replace(model.document, charts=table))
+    assert set(opened.charts(points, "normalised")) == {0, 1}
+    uvs = opened.uv(points, "normalised", np.zeros(len(points), int))
+    material, texture = model.document.materials[0], model.document.textures[0]
+    expected = base_color(material, decode_image(texture), uvs)
+    np.testing.assert_allclose(opened.color(points, "normalised"), expected, atol=1e-6)
 
 
 def test_project_lands_on_the_surface(model: NispModel, points: np.ndarray) -> None:

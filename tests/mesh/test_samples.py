@@ -33,8 +33,8 @@ def test_the_papers_sdf_is_told_about_empty_space_too(monkeypatch: pytest.Monkey
     monkeypatch.setattr(training, "PAPER_COUNT", 2000)
     sets = training.paper_training_sets(Sampler(box_asset(), seed=0))
     assert (sets.distance.sdf > 0.3).sum() > 2000
-    assert len(sets.skin) == len(sets.textured) == 2000
-    assert (sets.skin.sdf < 0.3).all()
+    assert len(sets.charts) == len(sets.textured) == 2000
+    assert (sets.charts.sdf < 0.3).all()
 
 
 def test_labels_of_the_box() -> None:
