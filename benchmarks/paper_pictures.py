@@ -99,7 +99,7 @@ _UV = ("chart", "uv")
 
 
 def _schedule(model: NispModel, sets: TrainingSets) -> Schedule:
-    """How the preset of the model fits its UV network, but for the price of bits."""
+    """How the preset of the model fits its UV network, but for first frequencies and rounding."""
     preset = str(model.document.info.get("preset", "balanced"))
     if preset == "paper":
         tasks = paper_tasks(len(model.document.charts), sets)

@@ -28,7 +28,7 @@ PAPER_LEVELS = 5
 PAPER_STEPS = 40_000
 """What twenty minutes on two cores allow of the published 2000 epochs of 10^6 samples."""
 
-PRICES = {"sdf": 0.06, "chart": 0.02, "uv": 0.12}
+PRICES = {"sdf": 0.06, "chart": 0.02, "uv": 0.08}
 """How much a bit a weight less may raise the loss, of SDF and UV relative to what is left of it."""
 
 BATCH = 1024
@@ -50,6 +50,9 @@ EMBEDDING = 4
 
 PROBE_BAND = 0.7
 """A short fit needs lower first frequencies, or the SDF is flat for most of it."""
+
+BANDS = {"chart": 1.0, "uv": 2 / 3}
+"""First frequencies of the others: on most of the surface UVs are all but straight in x, y and z."""
 
 SDF_LAST = 0.3
 """Relative rate of the SDF's last layer: its bias moves the whole field at once."""
@@ -162,7 +165,9 @@ def sine_tasks(
 
 def _schedule(name: str, steps: int, band: float) -> Schedule:
     schedule = Schedule(steps, BATCH, RATES[name], memory=MEMORIES[name])
-    return replace(schedule, band=band, last=SDF_LAST) if name == "sdf" else schedule
+    if name == "sdf":
+        return replace(schedule, band=band, last=SDF_LAST)
+    return replace(schedule, band=BANDS[name])
 
 
 def steps_in(seconds: float, spec: NetworkSpec) -> int:

@@ -40,8 +40,8 @@ class Model:
 
 MODELS = {
     "sdf": Model(33, 1.0e-3, 0.7, 22, 34),
-    "chart": Model(13.2, 0.03, 0.42, 16, 38),
-    "uv": Model(19.5, 9.3e-4, 0.6, 12, 34),
+    "chart": Model(9.65, 0.03, 0.6, 16, 44),
+    "uv": Model(18, 9.3e-4, 0.6, 12, 28),
 }
 
 AREA, AREA_POWER = 5.0, 0.4
