@@ -34,7 +34,7 @@ PRICES = {"sdf": 0.06, "chart": 0.02, "uv": 0.08}
 BATCH = 1024
 """With as long a memory as Muon's, more and smaller steps do better than large ones."""
 
-SHARES = {"sdf": 1.0, "chart": 0.35, "uv": 0.47}
+SHARES = {"sdf": 1.0, "chart": 0.45, "uv": 0.47}
 """Of the seconds: the SDF has a core to itself, charts and UVs share the other."""
 
 RATES = {"sdf": 1e-3, "chart": 3e-3, "uv": 1e-3}
@@ -52,7 +52,7 @@ PROBE_BAND = 0.7
 """A short fit needs lower first frequencies, or the SDF is flat for most of it."""
 
 BANDS = {"chart": 1.0, "uv": 2 / 3}
-"""First frequencies of the others: on most of the surface UVs are all but straight in x, y and z."""
+"""First frequencies of the others: on most of the surface UVs are all but straight in x, y, z."""
 
 SDF_LAST = 0.3
 """Relative rate of the SDF's last layer: its bias moves the whole field at once."""
