@@ -28,6 +28,9 @@ NEWTON_STEPS = 2
 CLEARANCE = 0.01
 # From a grid point of a block to the next along each axis.
 STRIDES = np.array([(BLOCK + 1) ** 2, BLOCK + 1, 1])
+# Of each edge of a cell: from the cell's first corner to its low end, and its axis.
+LOW_ENDS = CORNERS[[low for low, _ in EDGES]] @ STRIDES
+AXES = np.array([axis for _, axis in EDGES], np.int8)
 
 
 @dataclass(frozen=True)
@@ -153,35 +156,35 @@ def _polygons(values: Floats, points: Numbers) -> tuple[Ids, NDArray[np.int8], N
     An edge is known by the number of its low point, so that no sorting is needed to find the same
     edge in several cells.
     """
-    ends = CORNERS[[low for low, _ in EDGES]] @ STRIDES
-    axes = np.array([axis for _, axis in EDGES], np.int8)
     table = np.zeros(3 * (int(points.max(initial=0)) + 1), np.int32)
-    parts = list(enumerate(together(len(values))))
+    parts = together(len(values))
     edges = [np.empty((0, 3), np.int32)] * max(1, len(parts))
 
-    def polygons(numbered: tuple[int, slice]) -> None:
-        number, part = numbered
-        cases = _cases(values[part])
-        cells = np.flatnonzero((cases > 0) & (cases < 255))
-        owners, triangles = polygonise(cases[cells])
-        first = _first_corners(cells) + part.start * (BLOCK + 1) ** 3
-        places = first[owners, None] + ends[triangles]
-        edges[number] = 3 * points.ravel()[places] + axes[triangles]
+    def find(number: int) -> None:
+        places, axes = _triangles(values[parts[number]])
+        places += parts[number].start * (BLOCK + 1) ** 3
+        edges[number] = 3 * points.ravel()[places] + axes
         # Where an edge's low end is, and one, so that 0 is an edge not crossed. Blocks that share
         # the edge know it by places of their own, whichever is kept: they hold the same.
         table[edges[number]] = places + 1
 
-    on_every_core(polygons, parts)
-    crossed = np.flatnonzero(table)
-    lowest = table[crossed] - 1
-    table[crossed] = np.arange(len(crossed))
-
     def renumber(number: int) -> None:
         edges[number] = table[edges[number]]
 
-    on_every_core(renumber, range(len(edges)))
-    faces = np.concatenate(edges)
-    return lowest.astype(np.int64), (crossed % 3).astype(np.int8), faces
+    on_every_core(find, range(len(parts)))
+    crossed = np.flatnonzero(table)
+    lowest = table[crossed] - 1
+    table[crossed] = np.arange(len(crossed))
+    on_every_core(renumber, range(len(parts)))
+    return lowest.astype(np.int64), (crossed % 3).astype(np.int8), np.concatenate(edges)
+
+
+def _triangles(values: Floats) -> tuple[Ids, NDArray[np.int8]]:
+    """Triangles' edges (t, 3): where their low ends are in the values of all blocks, their axes."""
+    cases = _cases(values)
+    cells = np.flatnonzero((cases > 0) & (cases < 255))
+    owners, edges = polygonise(cases[cells])
+    return _first_corners(cells)[owners, None] + LOW_ENDS[edges], AXES[edges]
 
 
 def _cases(values: Floats) -> NDArray[np.uint8]:
