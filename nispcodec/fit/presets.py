@@ -28,7 +28,7 @@ PAPER_LEVELS = 5
 PAPER_STEPS = 40_000
 """What twenty minutes on two cores allow of the published 2000 epochs of 10^6 samples."""
 
-PRICES = {"sdf": 0.06, "chart": 0.02, "uv": 0.08}
+PRICES = {"sdf": 0.05, "chart": 0.02, "uv": 0.08}
 """How much a bit a weight less may raise the loss, of SDF and UV relative to what is left of it."""
 
 BATCH = 1024
