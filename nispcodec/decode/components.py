@@ -1,9 +1,10 @@
 """Which pieces of an extracted surface are real, and which are noise of the fitted field.
 
 A fitted SDF may cross zero where there is no surface, far from its training samples. Such a
-crossing gives itself away: it lies outside the normalised frame's unit ball, or it is tiny and the
-field around it is no distance field. A small hollow that nothing leads into is dropped as well:
-nobody can see into it.
+crossing gives itself away: it lies outside the normalised frame's unit ball, or the field around it
+is no distance field and it is steep, or tiny and far from everything else. Tiny pieces beside
+others are what is left of straps and wires. A small hollow that nothing leads into is dropped as
+well: nobody can see into it.
 """
 
 from __future__ import annotations
@@ -14,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
+from scipy.spatial import KDTree
 
 from nispcodec.decode.evaluate import gradient
 from nispcodec.decode.extract import OUTSIDE, Surface
@@ -21,9 +23,12 @@ from nispcodec.decode.grid import LIMIT
 from nispcodec.network import Network
 
 # Slopes are relative to the whole surface's. Noise between the samples was seen at 3 to 7. Flat
-# pieces are mostly scraps of real detail that the fit could not hold: only specks are dropped.
+# pieces are mostly scraps of real detail that the fit could not hold: only lonely specks are
+# dropped.
 STEEP, SMALL_SHARE = 1.7, 0.05
-FLAT, SPECK_AREA = 0.6, 3e-3
+FLAT, SPECK_AREA, LONELY = 0.6, 3e-3, 0.02
+# Vertices of which one is near any place on the surface, a quarter of `LONELY` or less away.
+MANY = 200_000
 HOLLOW_SHARE = 0.03
 SOME = 20_000
 
@@ -77,8 +82,8 @@ def components(surface: Surface) -> tuple[int, Integers]:
 def spurious(network: Network, surface: Surface) -> tuple[NDArray[np.bool_], Integers]:
     """Which components are noise (c,) bool, and the component of each vertex (n,).
 
-    A component is noise when all of it lies outside the unit ball, when it is small and the field's
-    mean slope on it is far from the slope elsewhere, or when it is a small hollow.
+    A component is noise when all of it lies outside the unit ball, when it is small and the field
+    is steep on it, when it is a lonely speck and the field is flat, or when it is a small hollow.
     """
     count, labels = components(surface)
     if count < 2:
@@ -87,9 +92,27 @@ def spurious(network: Network, surface: Surface) -> tuple[NDArray[np.bool_], Int
     np.minimum.at(nearest, labels, np.linalg.norm(surface.positions, axis=1))
     vertices = np.bincount(labels, minlength=count)
     slope = _mean_slopes(network, surface, labels, vertices)
-    flat = (slope < FLAT) & (vertices * surface.cell**2 < SPECK_AREA)
+    flat = _lonely(surface, labels, (slope < FLAT) & (vertices * surface.cell**2 < SPECK_AREA))
     hollow = _volumes(surface, labels, vertices < HOLLOW_SHARE * len(labels)) < 0
     return (nearest > OUTSIDE) | (slope > STEEP) | flat | hollow, labels
+
+
+def _lonely(surface: Surface, labels: Integers, specks: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """Of some components (c,) bool those with no other component within `LONELY`."""
+    apart = specks[labels]
+    members, points = labels[apart], surface.positions[apart]
+    others = surface.positions[~apart]
+    others = others[:: 1 + len(others) // MANY]
+    near = np.isfinite(KDTree(others).query(points, distance_upper_bound=LONELY)[0])
+    counts = np.maximum(np.bincount(members, minlength=len(specks)), 1)
+    sums = [np.bincount(members, axis, len(specks)) for axis in points.T]
+    centres = np.stack(sums, axis=1)[specks] / counts[specks, None]
+    # The nearest centre is a speck's own.
+    gaps = KDTree(centres).query(centres, k=2)[0][:, 1]
+    lonely = specks.copy()
+    lonely[members[near]] = False
+    lonely[np.flatnonzero(specks)[gaps <= LONELY]] = False
+    return lonely
 
 
 def _volumes(surface: Surface, labels: Integers, small: NDArray[np.bool_]) -> NDArray[np.float64]:

@@ -134,6 +134,35 @@ def test_small_real_bodies_stay(ball: Network) -> None:
     assert not unwanted.any()
 
 
+def beside(gap: float, slope: float) -> Network:
+    """An octahedron with its tip at x = 0.5, and `gap` further on a speck of that slope."""
+    axes, radius = np.vstack([np.eye(3), -np.eye(3)]), 0.014
+    away = 0.5 + gap + radius
+    second = np.zeros((2, 12))
+    second[0, :6], second[1, 6:] = 1 / np.sqrt(3), slope / np.sqrt(3)
+    body, speck = 0.5 / np.sqrt(3), slope * radius / np.sqrt(3)
+    layers = [
+        (np.vstack([axes, axes]), np.concatenate([np.zeros(6), -away * axes[:, 0]])),
+        (second, np.zeros(2)),
+        # min(a, b) = a - relu(a - b), where both are shifted to be positive.
+        (np.array([[1.0, 0.0], [1.0, -1.0]]), np.array([0.0, speck - body])),
+        (np.array([[1.0, -1.0]]), np.array([-body])),
+    ]
+    return tiny.relu_network(layers)
+
+
+@pytest.mark.parametrize(
+    ("gap", "slope", "dropped"), [(0.01, 0.3, 0), (0.1, 0.3, 1), (0.1, 0.9, 0)]
+)
+def test_flat_specks_are_noise_where_nothing_else_is_near(
+    gap: float, slope: float, dropped: int
+) -> None:
+    network = beside(gap, slope)
+    surface = extract(network, 256)
+    assert components(surface)[0] == 2
+    assert without_noise(network, surface)[1].dropped == dropped
+
+
 def hollow(outer: float, inner: float) -> Network:
     """An octahedron with a hollow: the middle of its wall is the ridge of the field."""
     axes = np.vstack([np.eye(3), -np.eye(3)])
