@@ -10,7 +10,13 @@ from numpy.typing import NDArray
 from nispcodec.asset import IndexArray, TexturedMesh
 from nispcodec.decode.atlas import asset_uv
 from nispcodec.decode.charting import vertex_charts
-from nispcodec.decode.components import ExtractionReport, without_noise
+from nispcodec.decode.components import (
+    SPECK_AREA,
+    ExtractionReport,
+    components,
+    without,
+    without_noise,
+)
 from nispcodec.decode.extract import Surface, extract, near_surface
 from nispcodec.decode.grid import LIMIT
 from nispcodec.decode.seams import cut_along_seams
@@ -95,13 +101,22 @@ def _fitted(document: Document, surface: Surface, faces: int) -> tuple[Surface, 
 
 
 def _opened(document: Document, surface: Surface, charts: IndexArray) -> tuple[Surface, IndexArray]:
-    """Without the membranes that the field draws across the asset's openings."""
+    """Without the membranes that the field draws across the asset's openings.
+
+    Islands in them, tiny pieces of another chart, go as well: the chart network was wrong there.
+    """
     if not document.charts.openings:
         return surface, charts
     kept = charts != len(document.charts) - 1
     used, corners = np.unique(surface.faces[kept], return_inverse=True)
     faces = corners.reshape(-1, 3).astype(np.int32)
-    return Surface(surface.positions[used], faces, surface.cell), charts[kept]
+    opened = Surface(surface.positions[used], faces, surface.cell)
+    count, labels = components(opened)
+    islands = np.bincount(labels, minlength=count) * surface.cell**2 < SPECK_AREA
+    cut_off = np.unique(labels[np.isin(used, surface.faces[~kept])])
+    islands &= np.isin(np.arange(count), cut_off)
+    left = ~islands[labels[faces[:, 0]]]
+    return without(opened, islands, labels), charts[kept][left]
 
 
 def _dressed(document: Document, surface: Surface, charts: IndexArray) -> TexturedMesh:

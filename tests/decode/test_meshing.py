@@ -9,6 +9,7 @@ import pytest
 
 from nispcodec.decode.extract import near_surface
 from nispcodec.decode.meshing import LEAST, MOST, default_resolution
+from nispcodec.decode.model import NispModel
 from nispcodec.decode.thinness import thin_share
 from nispcodec.network import Network
 from tests import tiny
@@ -33,6 +34,22 @@ def test_thin_walls_are_told_though_no_grid_point_lies_inside(
     network = plate(thickness)
     points, size = near_surface(network, LEAST)
     assert least <= thin_share(network, points, size, 0.01) <= most
+
+
+def test_islands_in_a_membrane_go_with_it() -> None:
+    # Chart 1, an opening, where x > 0, but for the tip, which the network gives to chart 0.
+    rows = np.array([[-1.0, 0, 0], [1.0, 0, 0], [1.0, 0, 0]]), np.array([0, 0, -0.792])
+    last = np.array([[1.0, 0, 1000], [0, 1, 0]]), np.zeros(2)
+    chart, table = tiny.relu_network([rows, last]), tiny.document().charts
+    opened = replace(table, has_uv=np.array([True, False]), openings=True)
+    model = NispModel(replace(tiny.document(), chart=chart))
+    whole, half = (
+        NispModel(replace(model.document, charts=charts)).to_mesh() for charts in (table, opened)
+    )
+    right = [model.document.frame.to_normalised(mesh.positions)[:, 0] for mesh in (whole, half)]
+    assert right[0].max() > 0.79
+    assert right[1].max() < 0.02
+    assert len(half.faces) > 0.4 * len(whole.faces)
 
 
 def test_default_resolution_follows_the_walls() -> None:
