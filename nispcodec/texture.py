@@ -8,7 +8,7 @@ from __future__ import annotations
 import io
 import struct
 import warnings
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from itertools import count
 from pathlib import PurePath
@@ -120,6 +120,28 @@ def base_color(material: Material, image: Image | None, uv: Coordinates) -> Imag
         return texels
     linear = np.concatenate([srgb_to_linear(texels[:, :3]), texels[:, 3:]], axis=1)
     return _encoded(linear * factor)
+
+
+def base_colors(
+    materials: Sequence[Material],
+    textures: Sequence[Texture],
+    owners: NDArray[np.integer],
+    has_uv: NDArray[np.bool_],
+    uv: Coordinates,
+) -> Image:
+    """Base colours (n, 4) at (n, 2) UVs of the materials `owners` (n,), as `base_color`.
+
+    Where `has_uv` (n,) is False the material shows its factor alone.
+    """
+    colors = np.empty((len(uv), 4), np.float32)
+    for number in np.unique(owners).tolist():
+        used = materials[number].maps.get("base_color")
+        shown = has_uv & (used is not None)
+        for image_shown in np.unique(shown[owners == number]).tolist():
+            chosen = (owners == number) & (shown == image_shown)
+            image = decode_image(textures[used.texture]) if used and image_shown else None
+            colors[chosen] = base_color(materials[number], image, uv[chosen])
+    return colors
 
 
 def srgb_to_linear(values: Image) -> Image:

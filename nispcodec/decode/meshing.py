@@ -112,9 +112,9 @@ def _opened(document: Document, surface: Surface, charts: IndexArray) -> tuple[S
     faces = corners.reshape(-1, 3).astype(np.int32)
     opened = Surface(surface.positions[used], faces, surface.cell)
     count, labels = components(opened)
-    islands = np.bincount(labels, minlength=count) * surface.cell**2 < SPECK_AREA
-    cut_off = np.unique(labels[np.isin(used, surface.faces[~kept])])
-    islands &= np.isin(np.arange(count), cut_off)
+    rim = labels[np.isin(used, surface.faces[~kept])]
+    tiny = np.bincount(labels, minlength=count) * surface.cell**2 < SPECK_AREA
+    islands = tiny & (np.bincount(rim, minlength=count) > 0)
     left = ~islands[labels[faces[:, 0]]]
     return without(opened, islands, labels), charts[kept][left]
 

@@ -8,7 +8,7 @@ from scipy.spatial import KDTree
 from nispcodec.asset import FloatArray, TexturedMesh
 from nispcodec.document import ChartTable
 from nispcodec.mesh.sample_set import SampleSet
-from nispcodec.texture import base_color, decode_image
+from nispcodec.texture import base_colors
 
 NEIGHBOURS = 16
 """Samples that are looked at round each: those that a network may take it for."""
@@ -19,7 +19,10 @@ def confusion(mesh: TexturedMesh, table: ChartTable, samples: SampleSet) -> Floa
 
     The mean over the neighbours of root mean square differences of colour and alpha.
     """
-    colors = _colors(mesh, table, samples)
+    uvs = samples.uv * np.asarray(table.uv_scale) + np.asarray(table.uv_offset)
+    owners, has_uv = table.materials[samples.chart], table.has_uv[samples.chart]
+    shown = base_colors(mesh.materials, mesh.textures, owners, has_uv, uvs)
+    colors = shown.astype(np.float64)
     count = min(NEIGHBOURS, len(samples))
     near = KDTree(samples.points).query(samples.points, list(range(1, count + 1)), workers=-1)[1]
     total = np.zeros(len(samples))
@@ -27,18 +30,3 @@ def confusion(mesh: TexturedMesh, table: ChartTable, samples: SampleSet) -> Floa
         off = np.sqrt(((colors[other] - colors) ** 2).mean(axis=1))
         total += off * (samples.chart[other] != samples.chart)
     return total / count
-
-
-def _colors(mesh: TexturedMesh, table: ChartTable, samples: SampleSet) -> FloatArray:
-    """(n, 4): what the samples' own charts show there."""
-    uvs = samples.uv * np.asarray(table.uv_scale) + np.asarray(table.uv_offset)
-    colors = np.empty((len(samples), 4))
-    materials, has_uv = table.materials[samples.chart], table.has_uv[samples.chart]
-    for number, material in enumerate(mesh.materials):
-        owned, used = materials == number, material.maps.get("base_color")
-        shown = owned & has_uv & (used is not None)
-        if used is not None and shown.any():
-            image = decode_image(mesh.textures[used.texture])
-            colors[shown] = base_color(material, image, uvs[shown])
-        colors[owned & ~shown] = base_color(material, None, uvs[owned & ~shown])
-    return colors

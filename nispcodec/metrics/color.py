@@ -7,12 +7,11 @@ from functools import reduce
 
 import numpy as np
 
-from nispcodec.asset import TexturedMesh
 from nispcodec.metrics.geometry import Matches
 from nispcodec.metrics.psnr import psnr
 from nispcodec.metrics.surface import Surface, SurfacePoints
 from nispcodec.metrics.uv import uv_at
-from nispcodec.texture import Image, base_color, decode_image
+from nispcodec.texture import Image, base_colors
 
 
 def color_at(surface: Surface, points: SurfacePoints) -> Image:
@@ -20,22 +19,9 @@ def color_at(surface: Surface, points: SurfacePoints) -> Image:
 
     Faces without UV show their material's factor alone.
     """
-    mesh, uvs = surface.mesh, uv_at(surface, points)
-    textured = mesh.has_uv[points.faces]
-    materials = mesh.face_materials[points.faces]
-    colors = np.empty((len(uvs), 4), dtype=np.float32)
-    for index in np.unique(materials).tolist():
-        for has_uv in (True, False):
-            chosen = (materials == index) & (textured == has_uv)
-            image = base_color_image(mesh, index) if has_uv and chosen.any() else None
-            colors[chosen] = base_color(mesh.materials[index], image, uvs[chosen])
-    return colors
-
-
-def base_color_image(mesh: TexturedMesh, material: int) -> Image | None:
-    """The pixels of a material's base-colour map, None when it has none."""
-    used = mesh.materials[material].maps.get("base_color")
-    return None if used is None else decode_image(mesh.textures[used.texture])
+    mesh, faces = surface.mesh, points.faces
+    owners, has_uv = mesh.face_materials[faces], mesh.has_uv[faces]
+    return base_colors(mesh.materials, mesh.textures, owners, has_uv, uv_at(surface, points))
 
 
 def color_psnr(original: Surface, decoded: Surface, directions: Iterable[Matches]) -> float:
