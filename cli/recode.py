@@ -14,7 +14,7 @@ from .report import print_group, rate
 if TYPE_CHECKING:
     from nispcodec.document import Document
 
-CODINGS = ("dense", "coo", "csc", "csr", "dia", "entropy")
+CODINGS = ("dense", "coo", "csc", "csr", "dia", "entropy", "drawn")
 IMAGE_FORMATS = ("webp", "avif", "jpeg")
 
 

@@ -27,6 +27,7 @@ OUTPUTS = ("identity", "tanh", "sigmoid")
 MAX_WIDTH = 1024
 MAX_HIDDEN_LAYERS = 32
 MAX_CHARTS = 65_535
+MAX_DRAW = 2**32 - 1
 
 
 @dataclass(frozen=True)
@@ -46,6 +47,7 @@ class NetworkSpec:
     mirror       bit 0, 1, 2: of x, y, z the absolute value enters, before any encoding, so that the
                  network holds one half and its answers are symmetric about the plane; bit 3, 4, 5:
                  x, y, z itself follows as a further coordinate, for what differs on the two sides
+    draw         number of the draws (`nispcodec.draw`) that training starts from
     """
 
     hidden: tuple[int, ...]
@@ -59,6 +61,7 @@ class NetworkSpec:
     w0: float = 30.0
     output: str = "identity"
     mirror: int = 0
+    draw: int = 0
 
     def __post_init__(self) -> None:
         _member("encoding", self.encoding, ENCODINGS)
@@ -77,6 +80,7 @@ class NetworkSpec:
         if not 0 < self.w0 <= 1000:
             raise FormatError("network", "w0", "a number in (0, 1000]", self.w0)
         _within("mirror", self.mirror, 0, 63)
+        _within("draw", self.draw, 0, MAX_DRAW)
         if self.mirror >> 3 & ~self.mirror:
             expected = "bits 3, 4, 5 only beside bits 0, 1, 2"
             raise FormatError("network", "mirror", expected, self.mirror)

@@ -3,17 +3,20 @@
 from __future__ import annotations
 
 import math
-from itertools import pairwise
 
 import numpy as np
 import torch
 from torch import Tensor
 from torch.nn import functional
 
+from nispcodec.draw import BITS, draws
 from nispcodec.fit.frames import affine_maps
 from nispcodec.fit.prune import Mask
 from nispcodec.fit.stack import Matrices
 from nispcodec.network import TABLES, Network, NetworkSpec, Weights
+
+EMBEDDED = math.sqrt(3)
+"""Bound of the first embeddings: their variance is 1."""
 
 
 class Module:
@@ -23,26 +26,25 @@ class Module:
     operation each. Sine layers hold w0 W and w0 b, which saves a pass over the activations. Once
     rounded (`nispcodec.fit.rounding`), each tensor is a multiple of its step in `steps`. Once
     pruned, `kept` is 1 or 0 for each number, and what is pruned is 0 after every `hold`. `band`
-    scales the frequencies that it starts with.
+    scales the frequencies that it starts with; `first` is what was drawn.
     """
 
     steps: Tensor | None = None
     kept: Tensor | None = None
 
-    def __init__(
-        self, spec: NetworkSpec, generator: torch.Generator, device: str, band: float = 1.0
-    ) -> None:
+    def __init__(self, spec: NetworkSpec, device: str, band: float = 1.0) -> None:
         self.spec = spec
         self._shapes = spec.shapes
         self._counts = [math.prod(shape) for shape in self._shapes.values()]
-        first = _initial(spec, generator)
+        first = _initial(spec)
         first["weight.0"] *= band
         first["bias.0"] *= band
         if spec.encoding == "identity":
             first["weight.0"][:, 3 : 3 + len(spec.sided)] = 0
         self.mirrored = torch.tensor(spec.mirrored, device=device)
         flat = [first[name].flatten() for name in self._shapes]
-        self.weights = torch.cat(flat).to(device).requires_grad_()
+        self.first = torch.cat(flat)
+        self.weights = self.first.clone().to(device).requires_grad_()
 
     @property
     def scales(self) -> dict[str, float]:
@@ -180,20 +182,27 @@ def _fourier(points: Tensor, levels: int) -> Tensor:
     return torch.stack([angles.sin(), angles.cos()], dim=3).flatten(1)
 
 
-def _initial(spec: NetworkSpec, generator: torch.Generator) -> dict[str, Tensor]:
+def _initial(spec: NetworkSpec) -> dict[str, Tensor]:
+    """Draws (`nispcodec.draw`), each tensor within its bound."""
+    bounds = _bounds(spec)
     tensors: dict[str, Tensor] = {}
-    for layer, (fan_in, fan_out) in enumerate(pairwise([spec.inputs, *spec.hidden, spec.outputs])):
-        bound = _weight_bound(spec, layer, fan_in)
-        weight = torch.rand(fan_out, fan_in, generator=generator) * 2 * bound - bound
-        bias_bound = bound if layer < len(spec.hidden) else 0.0
-        bias = torch.rand(fan_out, generator=generator) * 2 * bias_bound - bias_bound
-        tensors |= {f"weight.{layer}": weight, f"bias.{layer}": bias}
-    if spec.embedding:
-        tensors["embedding"] = torch.randn(spec.charts, spec.embedding, generator=generator)
-    for name in ("slopes", "offsets"):
-        if name in spec.shapes:
-            tensors[name] = torch.zeros(spec.shapes[name])
+    place = 0
+    for name, shape in spec.shapes.items():
+        count = math.prod(shape)
+        share = draws(spec.draw, place, count) / (1 << BITS)
+        tensors[name] = torch.from_numpy(share.reshape(shape) * bounds[name]).float()
+        place += count
     return tensors
+
+
+def _bounds(spec: NetworkSpec) -> dict[str, float]:
+    """How large the first numbers of every tensor are at most."""
+    bounds = {"embedding": EMBEDDED, "slopes": 0.0, "offsets": 0.0}
+    for layer, fan_in in enumerate([spec.inputs, *spec.hidden]):
+        bound = _weight_bound(spec, layer, fan_in)
+        bias = bound if layer < len(spec.hidden) else 0.0
+        bounds |= {f"weight.{layer}": bound, f"bias.{layer}": bias}
+    return bounds
 
 
 def _weight_bound(spec: NetworkSpec, layer: int, fan_in: int) -> float:

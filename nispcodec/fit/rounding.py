@@ -166,8 +166,8 @@ def _steps(module: Module, order: Tensor, roots: Sequence[Tensor], rounding: Rou
     allowed = rounding.price / (2 * math.log(2))
     steps = (24 * allowed / len(order) * counts / (total + TINY)).sqrt()
     if rounding.budget:
-        weights = module.weights.detach().cpu().double()[order]
-        steps *= 2 ** _octaves(weights, groups, steps, rounding.budget)
+        power = _power(module.weights.detach().cpu()[order], module.first[order], groups, counts)
+        steps *= 2 ** _octaves(power, counts, steps, rounding.budget)
     held = [
         snapped(min(max(step, FINEST), COARSEST) / scale) * scale
         for step, scale in zip(steps.tolist(), scales, strict=True)
@@ -175,15 +175,23 @@ def _steps(module: Module, order: Tensor, roots: Sequence[Tensor], rounding: Rou
     return torch.tensor(held, dtype=torch.float64)
 
 
-def _octaves(weights: Tensor, groups: Tensor, steps: Tensor, budget: float) -> float:
+def _power(weights: Tensor, first: Tensor, groups: Tensor, counts: Tensor) -> Tensor:
+    """Of each tensor the mean square of what its first numbers do not tell of its weights."""
+
+    def sums(values: Tensor) -> Tensor:
+        return torch.zeros_like(counts).index_add_(0, groups, values.double())
+
+    told = sums(weights * first).square() / (sums(first.square()) + TINY)
+    return (sums(weights.square()) - told) / counts.clamp(min=1)
+
+
+def _octaves(power: Tensor, counts: Tensor, steps: Tensor, budget: float) -> float:
     """How many octaves coarser (below 0: finer) steps make the weights fit into `budget` bits.
 
     n weights of power p on a grid of step s take n softplus(2 x) / 2 bits, x = log2(sqrt(p) / s) +
     `GAUSSIAN_BITS`: a Gaussian's entropy, kept above 0.
     """
-    counts = torch.bincount(groups, minlength=len(steps)).double()
-    power = torch.zeros_like(counts).index_add_(0, groups, weights.square())
-    excess = torch.log2((power / counts.clamp(min=1)).clamp(min=TINY)) + 2 * GAUSSIAN_BITS
+    excess = torch.log2(power.clamp(min=TINY)) + 2 * GAUSSIAN_BITS
     excess -= 2 * torch.log2(steps.clamp(min=FINEST))
     low, high = -OCTAVES, OCTAVES
     while high - low > CLOSE:

@@ -18,7 +18,7 @@ from nispcodec.fit.prune import Mask
 from nispcodec.fit.rounding import round_weights
 from nispcodec.fit.task import Batch, Rounding, Schedule, Task
 from nispcodec.mesh.misses import reaches
-from nispcodec.network import Network
+from nispcodec.network import MAX_DRAW, Network
 from nispcodec.progress import Listener, Progress
 
 WARM_UP = 0.15
@@ -75,7 +75,8 @@ class _Run:
         self.task = task
         self.listen = listen
         self.generator = torch.Generator().manual_seed(seed)
-        self.module = Module(task.spec, self.generator, device, task.schedule.band)
+        spec = replace(task.spec, draw=seed % (MAX_DRAW + 1))
+        self.module = Module(spec, device, task.schedule.band)
         self.held_out = Batch.of(task.held_out, device)
         self.samples = Batch.of(task.samples, device)
         if task.spec.conditioning == "frames":

@@ -21,7 +21,7 @@ TXTR = "TXTR"
 SECTIONS = (META, NETS, TXTR)
 
 NETWORKS = ("sdf", "chart", "uv")
-CODINGS = ("dense", "coo", "csc", "csr", "dia", "entropy")
+CODINGS = ("dense", "coo", "csc", "csr", "dia", "entropy", "drawn")
 MEASURES = (
     "preset",
     "seed",

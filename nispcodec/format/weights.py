@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
@@ -13,7 +14,7 @@ from nispcodec.format.codings import entropy
 from nispcodec.format.codings.reader import Reader
 from nispcodec.format.constants import CODINGS, MAX_SYMBOL, MAX_UNPACKED, MAX_WEIGHTS, NETS
 from nispcodec.format.container import pack_content
-from nispcodec.format.records import Part, Record
+from nispcodec.format.records import STREAMED, Part, Record
 from nispcodec.network import Network, NetworkSpec, Weights
 
 
@@ -23,8 +24,12 @@ def encode(networks: dict[str, Network], coding: str | None) -> bytes:
         raise FormatError(NETS, "coding", f"one of {', '.join(CODINGS)}", coding)
     _check_count([network.spec for network in networks.values()])
     prepared = [records.candidates(name, network) for name, network in networks.items()]
+    own, streamed = tuple(name for name in CODINGS if name not in STREAMED), STREAMED
     # The section is packed as a whole, so that the best for each tensor may not be the best of all.
-    choices = [(coding,)] if coding else [*((name,) for name in CODINGS), CODINGS[:-1], CODINGS]
+    choices = [*((name,) for name in own), streamed, own, CODINGS]
+    if coding:
+        # Weights that are no symbols, and those that draws tell nothing of, cannot be drawn.
+        choices = [streamed if coding == "drawn" else (coding,)]
     sections = (
         _section([record for each in prepared for record in records.cheapest(each, choice)])
         for choice in choices
@@ -44,20 +49,28 @@ def decode(
     read: dict[str, list[Part]] = {}
     ends = [0]
     for name, spec in specs.items():
-        read[name] = records.read(reader, name, spec.shapes)
+        read[name] = records.read(reader, name, spec)
         ends.append(reader.position)
     heads = [part.head for parts in read.values() for part in parts if part.head]
     coded = iter(entropy.decode(reader, heads))
     reader.finish()
     networks, bits = {}, [0.0]
     for name, spec in specs.items():
-        values = [next(coded) if part.values is None else (part.values, 0.0) for part in read[name]]
+        values = [_values(part, coded) for part in read[name]]
         bits.append(sum(cost for _, cost in values))
         flat = [each for each, _ in values]
         networks[name] = _network(reader, name, spec, read[name], flat)
     stream = (reader.position - ends[-1]) * np.cumsum(bits) / max(sum(bits), 1)
     lengths = np.diff(ends) + np.diff(np.rint(stream).astype(int))
     return networks, dict(zip(specs, map(int, lengths), strict=True))
+
+
+def _values(part: Part, coded: Iterator[entropy.Coded]) -> entropy.Coded:
+    """Those of a record, and the bits that they take in the stream."""
+    if part.values is not None:
+        return part.values, 0.0
+    values, bits = next(coded)
+    return values if part.expected is None else values + part.expected, bits
 
 
 def _section(chosen: list[Record]) -> bytes:

@@ -13,6 +13,7 @@ from PIL import Image
 
 from nispcodec.asset import SLOTS, WRAPS, Material, Texture, TextureMap
 from nispcodec.document import ChartTable, Document, Frame
+from nispcodec.draw import draws, told
 from nispcodec.format import pack
 from nispcodec.network import Network, NetworkSpec
 from tests.conformance.builder import container
@@ -59,6 +60,19 @@ def quantised(source: Network, step: float) -> Network:
         for name, tensor in source.tensors.items()
     }
     return Network(source.spec, tensors, steps)
+
+
+def moved(source: Network, step: float) -> Network:
+    """Symbols a few steps from where the draws begin, biases but not the last."""
+    generator = np.random.default_rng(2)
+    tensors, place = {}, 0
+    for name, shape in source.spec.shapes.items():
+        count = int(np.prod(shape))
+        began = told(draws(source.spec.draw, place, count), 90)
+        symbols = generator.normal(0, 2 if count > 1 else 60, count).round() + began * (count > 1)
+        tensors[name] = symbols.astype(np.float32).reshape(shape) * np.float32(step)
+        place += count
+    return Network(source.spec, tensors, dict.fromkeys(tensors, step))
 
 
 def pixels(width: int, height: int, seed: int = 0) -> NDArray[np.uint8]:
@@ -123,6 +137,9 @@ def _codings() -> Iterator[tuple[str, bytes]]:
         ):
             document = dataclasses.replace(plain(), sdf=sdf)
             yield f"coding-{coding}-{kind}", pack(document, coding)
+    for number in (0, 2**32 - 1):
+        drawn = moved(network((12, 11), 1, 0, draw=number), 0.0078125)
+        yield f"coding-drawn-{number}", pack(dataclasses.replace(plain(), sdf=drawn))
     long = quantised(pruned(network((182, 182), 1, 12)), 0.0078125)
     yield "coding-entropy-long", pack(dataclasses.replace(plain(), sdf=long), "entropy")
     empty = Network(plain().sdf.spec, {k: v * 0 for k, v in plain().sdf.tensors.items()})

@@ -34,8 +34,8 @@ class Reader:
         self.has_uv = flags(meta.get(5), self.k)
         self.uv_map = meta.get(6, [0.0, 0.0, 1.0, 1.0])
         self.specs = {number: topology(fields) for number, fields in sorted(meta[2].items())}
-        shapes = [self.shapes(number) for number in self.specs]
-        weights = DECODER["read_nets"](unpacked(rows["NETS"]), shapes)
+        tensors = [(self.shapes(number), made["draw"]) for number, made in self.specs.items()]
+        weights = DECODER["read_nets"](unpacked(rows["NETS"]), tensors)
         self.weights = dict(zip(self.specs, weights, strict=True))
         self.images = images(meta.get(8, []), unpacked(rows["TXTR"]) if "TXTR" in rows else b"")
 
@@ -109,6 +109,7 @@ def topology(fields: dict[int, Any]) -> dict[str, Any]:
         "w0": fields.get(7, 30.0),
         "output": NUMBERED["OUTPUTS"][fields.get(8, 1) - 1],
         "mirror": fields.get(9, 0),
+        "draw": fields.get(10, 0),
     }
 
 

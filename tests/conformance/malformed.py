@@ -247,7 +247,10 @@ _SPECS: dict[str, tuple[dict[int, Any], str]] = {
     "mirror-bit-unknown": ({1: [2], 9: 64}, "mirror"),
     "mirror-negative": ({1: [2], 9: -1}, "mirror"),
     "mirror-flag": ({1: [2], 9: True}, "mirror"),
-    "spec-key-unknown": ({1: [2], 10: 1}, "keys"),
+    "draw-default": ({1: [2], 10: 0}, "draw"),
+    "draw-negative": ({1: [2], 10: -1}, "draw"),
+    "draw-large": ({1: [2], 10: 2**32}, "draw"),
+    "spec-key-unknown": ({1: [2], 11: 1}, "keys"),
 }
 
 
@@ -310,7 +313,7 @@ def _tensors() -> Iterator[Malformed]:
     overflow = b"\x19" + struct.pack("<f", 3e38) + b"\x03" + b"\x7f" * 6
     cases = {
         "coding-reserved": (b"\0" + dense(6)[1:], "coding"),
-        "coding-unknown": (b"\x07" + dense(6)[1:], "coding"),
+        "drawn-without-step": (b"\x07\0" + dense(6)[1:], "step"),
         "joined-dense": (b"\x41" + dense(6)[1:], "joined"),
         "number-kind-reserved": (b"\x01\0" + bytes(12), "number kind"),
         "number-kind-of-symbols": (b"\x01\x03" + bytes(6), "number kind"),
@@ -397,5 +400,15 @@ def _heads() -> Iterator[Malformed]:
     for name, (tensor, field) in cases.items():
         file = container(rows(None, nets(tensor)))
         yield Malformed(name, file, "NETS", f"sdf.weight.0.{field}")
+    reaches = {"drawn-reach-large": b"\x80\x80\x80\x04", "drawn-reach-cut": b""}
+    for name, reach in reaches.items():
+        last = [dense(count) for count in TENSOR_SIZES[:-1]]
+        file = container(rows(None, b"".join([*last, b"\x1f" + step + reach])))
+        yield Malformed(name, file, "NETS", "sdf.bias.1.reach")
+    # All move as far as symbols go, and where draws end that is further.
+    far = entropy.Run(np.full(6, 2**23 - 1, np.int32))
+    first = b"\x1f" + step + b"\x64" + far.head()
+    file = container(rows(None, nets(first, entropy.encode([far]))))
+    yield Malformed("drawn-symbol-large", file, "NETS", "sdf.weight.0")
     joined = b"".join(dense(count) for count in TENSOR_SIZES[:-1]) + b"\x5e" + step + b"\0"
     yield Malformed("joined-many", container(rows(None, joined)), "NETS", "sdf.bias.1.joined")

@@ -157,7 +157,7 @@ def test_what_is_pruned_is_exactly_zero_in_the_file(optimiser: str, price: float
 
 
 def test_a_pruned_weight_has_no_gradient_and_no_place() -> None:
-    module = Module(SPEC, torch.Generator().manual_seed(0), "cpu")
+    module = Module(SPEC, "cpu")
     mask = {name: np.zeros_like(kept) for name, kept in everything(SPEC).items()}
     mask["weight.1"][0, 0] = True
     module.prune(mask)

@@ -19,6 +19,7 @@ from nispcodec.fit.prune import everything
 from nispcodec.fit.rounding import nearest, round_weights
 from nispcodec.fit.task import Batch, Curvature, Rounding
 from nispcodec.fit.train import train
+from nispcodec.format import records
 from nispcodec.network import Network, NetworkSpec
 from nispcodec.progress import silent
 from tests.fit.test_train import ball_samples, module_of, sdf_task
@@ -40,7 +41,7 @@ def batch(name: str) -> Batch:
 
 def rounded(name: str, price: float, budget: float = 0.0) -> tuple[Module, Module]:
     """A module of random weights, and the same rounded."""
-    before, after = (Module(SPECS[name], torch.Generator().manual_seed(0), "cpu") for _ in range(2))
+    before, after = (Module(SPECS[name], "cpu") for _ in range(2))
     rounding = Rounding(CURVATURES[name], price, budget)
     round_weights(after, batch(name), rounding, torch.Generator().manual_seed(0))
     return before, after
@@ -71,7 +72,7 @@ def outputs(module: Module, part: Batch) -> torch.Tensor:
 def alone(before: Module, steps: torch.Tensor | None) -> Module:
     """A copy, each weight rounded to the nearest symbol of its own."""
     assert steps is not None
-    module = Module(before.spec, torch.Generator(), "cpu")
+    module = Module(before.spec, "cpu")
     grid = steps[module.groups]
     module.weights.data = ((before.weights.detach() / grid).round() * grid).float()
     return module
@@ -115,7 +116,7 @@ def squared(outputs: torch.Tensor, _: Batch) -> torch.Tensor:
 
 def test_the_rise_is_what_the_price_says() -> None:
     """Of half the mean square, a loss whose second derivatives these are."""
-    module = Module(SPECS["sdf"], torch.Generator().manual_seed(0), "cpu")
+    module = Module(SPECS["sdf"], "cpu")
     part = batch("sdf")
     before, price = outputs(module, part), 1e-10
     rounding = Rounding(Curvature(squared, 1e-6), price)
@@ -138,18 +139,23 @@ def test_nearest_is_at_most_half_a_step_off_in_the_metric(seed: int, size: int) 
 
 @pytest.mark.parametrize("bits", [4.0, 7.0, 10.0])
 def test_a_budget_is_kept(bits: float) -> None:
-    count = SPECS["sdf"].weight_count
-    network = rounded("sdf", 1e-3, bits * count)[1].network()
+    """Of how far weights went from where they began, as a file has it."""
+    module, generator = Module(SPECS["sdf"], "cpu"), torch.Generator().manual_seed(0)
+    module.weights.data += module.first * torch.randn(len(module.first), generator=generator) / 2
+    count = len(module.weights)
+    round_weights(module, batch("sdf"), Rounding(CURVATURES["sdf"], 1e-3, bits * count), generator)
+    written = records.candidates("sdf", module.network())
+    tensors = {tensor.path: tensor for *_, record in written for tensor in record.tensors}
     found = sum(
-        tensor.size * max(0.0, math.log2(float(np.sqrt((tensor / step) ** 2).mean()) * 4.1327))
-        for tensor, step in zip(network.tensors.values(), network.steps.values(), strict=True)
-        if tensor.any()
+        tensor.moves.size * max(0.0, math.log2(float(np.abs(tensor.moves).mean()) * 5.18))
+        for tensor in tensors.values()
+        if tensor.moves.any()
     )
     assert found / count == pytest.approx(bits, rel=0.2)
 
 
 def test_what_is_pruned_stays_zero_and_a_whole_tensor_may_go() -> None:
-    module = Module(SPECS["sdf"], torch.Generator().manual_seed(0), "cpu")
+    module = Module(SPECS["sdf"], "cpu")
     mask = {name: np.ones_like(kept) for name, kept in everything(SPECS["sdf"]).items()}
     mask["weight.1"][:] = False
     mask["weight.0"][::2] = False
@@ -163,7 +169,7 @@ def test_what_is_pruned_stays_zero_and_a_whole_tensor_may_go() -> None:
 
 
 def test_fewer_points_than_weights_will_do() -> None:
-    module = Module(SPECS["sdf"], torch.Generator().manual_seed(0), "cpu")
+    module = Module(SPECS["sdf"], "cpu")
     few = next(iter(batch("sdf").parts(5)))
     rounding = Rounding(Curvature(squared, 1e-12), 1e-6)
     round_weights(module, few, rounding, torch.Generator().manual_seed(0))
@@ -171,7 +177,7 @@ def test_fewer_points_than_weights_will_do() -> None:
 
 
 def test_weights_that_are_not_finite_are_an_error() -> None:
-    module = Module(SPECS["sdf"], torch.Generator().manual_seed(0), "cpu")
+    module = Module(SPECS["sdf"], "cpu")
     module.weights.data[3] = float("nan")
     rounding = Rounding(CURVATURES["sdf"], 1e-3)
     with pytest.raises(FitError, match="expected finite derivatives, found NaN"):

@@ -64,7 +64,7 @@ def run(task: Task, listen: Callable[[Progress], None] = silent, seed: int = 0) 
 
 def module_of(network: Network) -> Module:
     """The torch side of a stored network."""
-    module = Module(network.spec, torch.Generator(), "cpu")
+    module = Module(network.spec, "cpu")
     scaled = [tensor * module.scales[name] for name, tensor in network.tensors.items()]
     vector = np.concatenate([tensor.ravel() for tensor in scaled])
     module.weights.data = torch.from_numpy(vector.astype(np.float32))

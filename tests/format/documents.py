@@ -137,6 +137,7 @@ def networks(draw: st.DrawFn, outputs: int, charts: int = 0) -> Network:
         w0=draw(st.floats(0.5, 60)),
         output=draw(st.sampled_from(OUTPUTS)),
         mirror=draw(st.sampled_from([*range(8), 0b001001, 0b110111])),
+        draw=draw(st.sampled_from([0, 1, 2**32 - 1])),
     )
     made = network(spec, draw(st.integers(0, 9)), draw(st.sampled_from([1e-6, 0.1, 50.0])))
     if draw(st.booleans()):

@@ -144,8 +144,8 @@ def test_its_weight_decoder(coding: str | None) -> None:
     document = full()
     data = pack(document, coding)
     nets = next(entry for entry in read_container(data) if entry.code == "NETS")
-    shapes = [matrices(each) for each in document.networks.values()]
-    decoded = DECODER["read_nets"](bytes(content(nets)), shapes)
+    tensors = [(matrices(each), each.spec.draw) for each in document.networks.values()]
+    decoded = DECODER["read_nets"](bytes(content(nets)), tensors)
     for each, found in zip(document.networks.values(), decoded, strict=True):
         for values, tensor in zip(found, each.tensors.values(), strict=True):
             np.testing.assert_array_equal(np.array(values, np.float32), tensor.ravel())

@@ -19,6 +19,9 @@ from nispcodec.format.codings.rans import Integers
 from nispcodec.format.codings.reader import Reader, varint
 from nispcodec.format.constants import MAX_SYMBOL
 
+Coded = tuple[NDArray[Any], float]
+"""Values of a run, and the bits that an ideal coder takes for them."""
+
 
 class Run:
     """Values to write under one curve: (n,) float32 weights or int32 symbols."""
@@ -102,11 +105,8 @@ def read_head(reader: Reader, count: int, symbols: bool) -> Head:
     return Head(count, kind, top, limit, curve.decode(reader) if limit else None)
 
 
-def decode(reader: Reader, heads: list[Head]) -> list[tuple[NDArray[Any], float]]:
-    """The stream -> (n,) float32 weights or int32 symbols of every run, and how many bits it took.
-
-    The bits are those of an ideal coder.
-    """
+def decode(reader: Reader, heads: list[Head]) -> list[Coded]:
+    """The stream -> (n,) float32 weights or int32 symbols of every run, and the bits it took."""
     tokens = rans.decode(reader, [(head.coded, head.starts) for head in heads])
     ends = np.cumsum([head.coded for head in heads], dtype=np.int64)
     parts = np.split(tokens, ends)[:-1]
