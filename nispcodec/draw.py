@@ -28,9 +28,9 @@ def draws(number: int, first: int, count: int) -> Integers:
     return found.astype(np.int64) - (1 << BITS)
 
 
-def told(drawn: Integers, reach: int) -> Integers:
-    """(n,) what draws let expect of symbols: `reach` times the draw in [-1, 1), to the nearest."""
-    return (reach * drawn + (1 << BITS - 1)) >> BITS
+def told(drawn: Integers, reach: int, octaves: Integers) -> Integers:
+    """What draws let expect of symbols: `reach` times the draw in [-1, 1), in steps of 2^octave."""
+    return (reach * drawn + (1 << BITS - 1 + octaves)) >> BITS + octaves
 
 
 def _mixed(state: NDArray[np.uint64]) -> NDArray[np.uint64]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from itertools import accumulate
 
 import numpy as np
 import torch
@@ -126,6 +127,27 @@ class Module:
         """For each number of the vector that of its tensor."""
         counts = torch.tensor(self._counts)
         return torch.repeat_interleave(torch.arange(len(counts)), counts)
+
+    @property
+    def rows(self) -> Tensor:
+        """For each number of the vector that of its matrix' row; a bias is one row."""
+        lengths = [shape[-1] for shape in self._shapes.values()]
+        every = [
+            length
+            for length, rows in zip(lengths, self._rows_each, strict=True)
+            for _ in range(rows)
+        ]
+        return torch.repeat_interleave(torch.arange(len(every)), torch.tensor(every))
+
+    @property
+    def rows_of_tensors(self) -> list[slice]:
+        """Which rows each tensor has."""
+        ends = list(accumulate(self._rows_each))
+        return [slice(end - rows, end) for end, rows in zip(ends, self._rows_each, strict=True)]
+
+    @property
+    def _rows_each(self) -> list[int]:
+        return [math.prod(shape[:-1]) for shape in self._shapes.values()]
 
     def network(self) -> Network:
         """The weights as they are now; once rounded, each a symbol times its tensor's step."""

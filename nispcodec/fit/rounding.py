@@ -31,8 +31,11 @@ ENTRIES = 4_000_000
 SHARES = 0.0, 0.1, 0.3, 1.0
 """Of Newton's step: beyond some way the outputs are no longer straight in the weights."""
 
+HEAD = 52
+"""Bits of what a file says of a tensor besides its symbols."""
 GAUSSIAN_BITS = 0.5 * math.log2(2 * math.pi * math.e)
 FINEST, COARSEST = 1e-6, 1e3
+MAX_OCTAVE, SIXTEENTHS = 7, 1 / 16
 OCTAVES, CLOSE = 32.0, 1e-3
 TINY = 1e-30
 
@@ -42,7 +45,7 @@ Doubles = NDArray[np.float64]
 def round_weights(
     module: Module, samples: Batch, rounding: Rounding, generator: torch.Generator
 ) -> None:
-    """Put the weights on a grid, with a step for each tensor; what is pruned costs nothing."""
+    """Put the weights on a grid, with a step for each row; what is pruned costs nothing."""
     count = min(max(DERIVATIVES // len(module.places), SAMPLES), MOST_SAMPLES)
     rows = torch.randperm(len(samples), generator=generator)[:count]
     batch = samples.chosen(rows.to(samples.points.device))
@@ -52,12 +55,12 @@ def round_weights(
     order = module.places.flip(0)
     blocks = torch.split(order, BLOCK)
     roots = rise.roots(blocks, generator)
-    module.steps = _steps(module, order, roots, rounding)
+    grid = _grid(module, order, roots, rounding)
     for places, root in zip(reversed(blocks), reversed(roots), strict=True):
-        values, grid = rise.least(places, root), module.steps[module.groups[places]]
-        together = torch.from_numpy(nearest((values / grid).numpy(), (root * grid).numpy()))
+        values, steps = rise.least(places, root), grid[places]
+        together = torch.from_numpy(nearest((values / steps).numpy(), (root * steps).numpy()))
         # Steps so coarse that the rise is no square any more: then each weight by itself.
-        rise.best(places, [together * grid, (values / grid).round() * grid])
+        rise.best(places, [together * steps, (values / steps).round() * steps])
 
 
 def nearest(values: Doubles, root: Doubles) -> Doubles:
@@ -153,46 +156,68 @@ def _root(square: Tensor, damping: float) -> Tensor:
         damping *= 10
 
 
-def _steps(module: Module, order: Tensor, roots: Sequence[Tensor], rounding: Rounding) -> Tensor:
-    """The steps, one for each tensor, with which rounding costs what it may, in fewest bits.
+def _grid(module: Module, order: Tensor, roots: Sequence[Tensor], rounding: Rounding) -> Tensor:
+    """Of each weight the step with which rounding costs what it may, in fewest bits.
 
     An error of variance s^2 / 12 in each weight costs half its stiffness times that; at the optimum
-    a bit less costs the same in every tensor.
+    a bit less costs the same in every row. A row's step is its tensor's, which goes to the module's
+    `steps`, times a power of two, its octave: that is what files can say.
     """
-    groups, scales = module.groups[order], module.scales.values()
     stiffness = torch.cat([root.diagonal().square() for root in roots])
-    counts = torch.bincount(groups, minlength=len(scales)).double()
-    total = torch.zeros_like(counts).index_add_(0, groups, stiffness)
+    rows, count = module.rows[order], int(module.rows.max()) + 1
+    counts = torch.bincount(rows, minlength=count).double()
+    total = torch.bincount(rows, stiffness, minlength=count)
     allowed = rounding.price / (2 * math.log(2))
     steps = (24 * allowed / len(order) * counts / (total + TINY)).sqrt()
+    steps.clamp_(FINEST, COARSEST)
     if rounding.budget:
-        power = _power(module.weights.detach().cpu()[order], module.first[order], groups, counts)
-        steps *= 2 ** _octaves(power, counts, steps, rounding.budget)
-    held = [
-        snapped(min(max(step, FINEST), COARSEST) / scale) * scale
-        for step, scale in zip(steps.tolist(), scales, strict=True)
-    ]
-    return torch.tensor(held, dtype=torch.float64)
+        steps *= 2 ** _finer(module, order, steps, rounding.budget)
+    steps.clamp_(FINEST, COARSEST)
+    held = []
+    for scale, found in zip(module.scales.values(), module.rows_of_tensors, strict=True):
+        step, octaves = shared_step(steps[found].numpy(), counts[found].numpy(), scale)
+        steps[found] = torch.from_numpy(step * 2**octaves)
+        held.append(step)
+    module.steps = torch.tensor(held, dtype=torch.float64)
+    return steps[module.rows]
 
 
-def _power(weights: Tensor, first: Tensor, groups: Tensor, counts: Tensor) -> Tensor:
-    """Of each tensor the mean square of what its first numbers do not tell of its weights."""
+def shared_step(steps: Doubles, counts: Doubles, scale: float) -> tuple[float, Doubles]:
+    """One step for a tensor, and for each row an octave of it, in place of `steps` of their own.
 
-    def sums(values: Tensor) -> Tensor:
-        return torch.zeros_like(counts).index_add_(0, groups, values.double())
-
-    told = sums(weights * first).square() / (sums(first.square()) + TINY)
-    return (sums(weights.square()) - told) / counts.clamp(min=1)
-
-
-def _octaves(power: Tensor, counts: Tensor, steps: Tensor, budget: float) -> float:
-    """How many octaves coarser (below 0: finer) steps make the weights fit into `budget` bits.
-
-    n weights of power p on a grid of step s take n softplus(2 x) / 2 bits, x = log2(sqrt(p) / s) +
-    `GAUSSIAN_BITS`: a Gaussian's entropy, kept above 0.
+    counts  (rows,) weights in each row: what a step that is too fine or too coarse costs them in
+            bits is weighed against the bits of octaves
+    scale   of which the step has few digits
     """
-    excess = torch.log2(power.clamp(min=TINY)) + 2 * GAUSSIAN_BITS
-    excess -= 2 * torch.log2(steps.clamp(min=FINEST))
+    wanted = np.log2(steps[counts > 0]) if counts.any() else np.zeros(1)
+    first, last = float(wanted.min()), float(wanted.max())
+    exponents = np.arange(first, min(last, first + MAX_OCTAVE) + SIXTEENTHS, SIXTEENTHS)
+    best: tuple[float, float, Doubles] | None = None
+    for step in sorted({snapped(2.0**exponent / scale) * scale for exponent in exponents.tolist()}):
+        for width in range(MAX_OCTAVE.bit_length() + 1 if len(steps) > 1 else 1):
+            octaves = np.clip(np.rint(np.log2(steps / step)), 0, (1 << width) - 1)
+            off = step * 2**octaves / steps
+            bits = counts @ (off**2 / (2 * math.log(2)) - np.log2(off)) + width * len(steps)
+            if best is None or bits < best[0]:
+                best = float(bits), step, octaves
+    assert best is not None
+    return best[1:]
+
+
+def _finer(module: Module, order: Tensor, steps: Tensor, budget: float) -> float:
+    """How many octaves coarser (below 0: finer) `steps` of rows make weights fit into a budget.
+
+    In bits, of all weights: n symbols of a tensor, of power p less what first numbers tell of them,
+    take n softplus(2 x) / 2 bits, x = log2(sqrt(p)) + `GAUSSIAN_BITS`: a Gaussian's entropy, kept
+    above 0.
+    """
+    tensors, grid = module.groups[order], steps[module.rows[order]]
+    weights, first = module.weights.detach().cpu()[order].double(), module.first[order].double()
+    share = torch.bincount(tensors, weights * first) / (torch.bincount(tensors, first**2) + TINY)
+    counts = torch.bincount(tensors).double()
+    power = torch.bincount(tensors, ((weights - share[tensors] * first) / grid).square())
+    budget -= HEAD * len(counts)
+    excess = torch.log2((power / counts.clamp(min=1)).clamp(min=TINY)) + 2 * GAUSSIAN_BITS
     low, high = -OCTAVES, OCTAVES
     while high - low > CLOSE:
         middle = (low + high) / 2

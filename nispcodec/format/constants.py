@@ -33,7 +33,7 @@ MEASURES = (
     "uv_error_mean",
 )
 PRESETS = ("balanced", "paper", "fast", "best")
-STEPS = ("byte", "float16", "float32", "same")
+STEPS = ("byte", "float16", "float32", "same", "rows1", "rows2", "rows3")
 NUMBERS = ("float32", "float16", "int8", "int16", "int32")
 ENDINGS = (".png", ".jpg", ".webp", ".avif")
 
@@ -50,3 +50,4 @@ MAX_MEMORY = 96 * 2**20
 MAX_SYMBOL = 2**23 - 1
 MAX_CELLS = 256
 MAX_JOINED = 3
+MAX_OCTAVE = 7

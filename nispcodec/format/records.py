@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+import math
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import accumulate
@@ -11,7 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from nispcodec.draw import BITS, Integers, draws, told
+from nispcodec.draw import Integers, draws, told
 from nispcodec.errors import FormatError
 from nispcodec.format import steps
 from nispcodec.format.codings import coo, csc, csr, dense, dia, entropy
@@ -25,69 +26,55 @@ from nispcodec.format.constants import (
     STEPS,
 )
 from nispcodec.format.container import pack_content
+from nispcodec.format.tensor import Tensor
 from nispcodec.network import Network, NetworkSpec, Weights
 
 _OWN = {"dense": dense, "coo": coo, "csc": csc, "csr": csr, "dia": dia}
 STREAMED = ("entropy", "drawn")
-
-
-@dataclass(frozen=True)
-class Tensor:
-    """A tensor to write: its step, if it is quantised, and its weights or symbols in 2-D.
-
-    `drawn` are the draws that it began from.
-    """
-
-    path: str
-    step: float | None
-    matrix: NDArray[Any]
-    drawn: Integers
-
-    @cached_property
-    def reach(self) -> int:
-        """That with which draws tell most of the symbols; 0 where they tell nothing."""
-        if self.step is None:
-            return 0
-        symbols, shares = self.matrix.ravel(), self.drawn / (1 << BITS)
-        fitted = float(symbols @ shares) / float(shares @ shares)
-        reach = min(max(round(fitted), 0), MAX_SYMBOL)
-        return reach if np.abs(symbols - told(self.drawn, reach)).max() <= MAX_SYMBOL else 0
-
-    @property
-    def moves(self) -> Integers:
-        """How far the symbols are from what draws tell of them."""
-        return self.matrix.ravel() - told(self.drawn, self.reach)
+_NONE = [np.zeros(1, np.int64)]
 
 
 @dataclass(frozen=True)
 class Record:
-    """Tensors to write together; `before` is the step of the tensor before them."""
+    """Tensors to write together; `before` is the step of the tensor before them.
+
+    Rows have octaves of `width` bits, none where that is 0.
+    """
 
     coding: str
     tensors: list[Tensor]
     before: float | None
+    width: int
 
     @cached_property
     def run(self) -> entropy.Run | None:
         """What goes to the stream, if anything does."""
-        if self.coding == "drawn":
-            return entropy.Run(np.concatenate([tensor.moves for tensor in self.tensors]))
-        if self.coding == "entropy":
-            return entropy.Run(np.concatenate([tensor.matrix.ravel() for tensor in self.tensors]))
-        return None
+        if self.coding not in STREAMED:
+            return None
+        return entropy.Run(np.concatenate([each.ravel() for each in self._values]))
 
     def encode(self) -> bytes:
-        """Tag, step, and the payload, or the reaches and the run's head."""
+        """Tag, step, octaves, and the payload, or the reaches and the run's head."""
         first, form, step = self.tensors[0], 0, b""
         if first.step is not None:
-            name, step = steps.encode(first.path, first.step, self.before)
+            octaves = np.concatenate(self._octaves)
+            name, step = steps.encode(first.path, first.step, self.before, octaves, self.width)
             form = 1 + STEPS.index(name)
         tag = 1 + CODINGS.index(self.coding) | form << 3 | len(self.tensors) - 1 << 6
         if not self.run:
-            return bytes([tag]) + step + _OWN[self.coding].encode(first.matrix)
+            return bytes([tag]) + step + _OWN[self.coding].encode(self._values[0])
         drawn = self.tensors if self.coding == "drawn" else []
         reaches = b"".join(varint(tensor.reach) for tensor in drawn)
         return bytes([tag]) + step + reaches + self.run.head()
+
+    @property
+    def _octaves(self) -> list[Integers]:
+        return [np.minimum(tensor.octaves, (1 << self.width) - 1) for tensor in self.tensors]
+
+    @property
+    def _values(self) -> list[NDArray[Any]]:
+        pairs = zip(self.tensors, self._octaves, strict=True)
+        return [tensor.values(octaves, self.coding == "drawn") for tensor, octaves in pairs]
 
     @cached_property
     def size(self) -> float:
@@ -102,14 +89,16 @@ class Record:
 class Part:
     """A record that was read: the tensors it is of, their step, their values or the run's head.
 
-    Symbols in the coding drawn lie `expected` further than the run has them.
+    Symbols are what is read, plus what is `expected`, times two to the power of `octaves`; either
+    for each weight or for all.
     """
 
     names: list[str]
     step: float | None
     values: NDArray[Any] | None
     head: entropy.Head | None
-    expected: Integers | None = None
+    octaves: Integers
+    expected: Integers
 
 
 Candidate = tuple[int, int, Record]
@@ -123,17 +112,24 @@ def candidates(name: str, network: Network) -> list[Candidate]:
     """
     tensors = _prepare(name, network)
     found = []
-    for start, tensor in enumerate(tensors):
+    for start in range(len(tensors)):
         before = tensors[start - 1].step if start else None
-        found += [(start, start + 1, Record(coding, [tensor], before)) for coding in _OWN]
         for end in range(start + 1, min(start + 1 + MAX_JOINED, len(tensors)) + 1):
             run = tensors[start:end]
-            if run[-1].step != tensor.step:
+            if run[-1].step != run[0].step:
                 break
-            found.append((start, end, Record("entropy", run, before)))
-            if any(each.reach for each in run):
-                found.append((start, end, Record("drawn", run, before)))
+            found += [(start, end, record) for record in _records(run, before)]
     return found
+
+
+def _records(run: list[Tensor], before: float | None) -> Iterator[Record]:
+    """Every record of these tensors."""
+    codings = list(_OWN) if len(run) == 1 else []
+    codings += STREAMED if any(tensor.reach for tensor in run) else STREAMED[:1]
+    widest = max(int(tensor.octaves.max()) for tensor in run).bit_length()
+    rows = run[0].step is not None and steps.has_octaves(run[0].step)
+    for width in {0, widest if rows else 0}:
+        yield from (Record(coding, run, before, width) for coding in codings)
 
 
 def cheapest(candidates: list[Candidate], codings: tuple[str, ...]) -> list[Record]:
@@ -153,15 +149,20 @@ def _prepare(name: str, network: Network) -> list[Tensor]:
         path, step = f"{name}.{key}", network.steps.get(key)
         # Adding 0 makes -0 a 0.
         values = tensor + np.float32(0) if step is None else _symbols(path, tensor, step)
-        tensors.append(Tensor(path, step, values.reshape(_matrix_shape(tensor.shape)), drawn[key]))
+        shape = _matrix_shape(tensor.shape)
+        tensors.append(Tensor(path, step, values.reshape(shape), drawn[key]))
     return tensors
 
 
 def _drawn(spec: NetworkSpec, names: Iterable[str]) -> dict[str, Integers]:
-    """Of each of these tensors the draws that it began from."""
-    counts = {name: int(np.prod(shape)) for name, shape in spec.shapes.items()}
-    places = dict(zip(counts, accumulate(counts.values(), initial=0), strict=False))
-    return {name: draws(spec.draw, places[name], counts[name]) for name in names}
+    """Of each of these tensors the draws that it began from, in 2-D."""
+    shapes = {name: _matrix_shape(shape) for name, shape in spec.shapes.items()}
+    ends = accumulate(math.prod(shape) for shape in shapes.values())
+    first = {name: end - math.prod(shapes[name]) for name, end in zip(shapes, ends, strict=True)}
+    return {
+        name: draws(spec.draw, first[name], math.prod(shapes[name])).reshape(shapes[name])
+        for name in names
+    }
 
 
 def read(reader: Reader, path: str, spec: NetworkSpec) -> list[Part]:
@@ -182,8 +183,6 @@ def _read(reader: Reader, left: list[str], spec: NetworkSpec, before: float | No
     if not 1 <= number <= len(CODINGS):
         raise reader.error("coding", f"1 to {len(CODINGS)}", number)
     coding = CODINGS[number - 1]
-    if form > len(STEPS):
-        raise reader.error("step", f"0 to {len(STEPS)}", form)
     if coding == "drawn" and not form:
         raise reader.error("step", f"1 to {len(STEPS)} with drawn", form)
     most = len(left) - 1 if coding in STREAMED else 0
@@ -191,21 +190,31 @@ def _read(reader: Reader, left: list[str], spec: NetworkSpec, before: float | No
         raise reader.error("joined", f"at most {most} more tensors", joined)
     step = steps.decode(reader, STEPS[form - 1], before) if form else None
     names = left[: 1 + joined]
-    if coding in STREAMED:
-        expected = _expected(reader, names, spec) if coding == "drawn" else None
-        count = sum(int(np.prod(spec.shapes[name])) for name in names)
-        head = entropy.read_head(reader, count, step is not None)
-        return Part(names, step, None, head, expected)
-    coder, shape = _OWN[coding], _matrix_shape(spec.shapes[names[0]])
-    return Part(names, step, coder.decode(reader, shape, step is not None).ravel(), None)
+    shapes = [_matrix_shape(spec.shapes[name]) for name in names]
+    every = _octaves(reader, STEPS[form - 1], shapes) if form else _NONE
+    octaves = np.concatenate([each.ravel() for each in every])
+    if coding not in STREAMED:
+        values = _OWN[coding].decode(reader, shapes[0], step is not None).ravel()
+        return Part(names, step, values, None, octaves, _NONE[0])
+    expected = _expected(reader, _drawn(spec, names), every) if coding == "drawn" else _NONE[0]
+    count = sum(math.prod(shape) for shape in shapes)
+    head = entropy.read_head(reader, count, step is not None)
+    return Part(names, step, None, head, octaves, expected)
 
 
-def _expected(reader: Reader, names: list[str], spec: NetworkSpec) -> Integers:
-    """What draws tell of the symbols of some consecutive tensors."""
-    drawn = _drawn(spec, names)
-    reaches = [reader.varint("reach", MAX_SYMBOL) for _ in names]
-    parts = [told(drawn[name], reach) for name, reach in zip(names, reaches, strict=True)]
-    return np.concatenate(parts)
+def _octaves(reader: Reader, form: str, shapes: list[tuple[int, int]]) -> list[Integers]:
+    """(rows, columns) those of every weight of some tensors."""
+    rows = [shape[0] for shape in shapes]
+    found = np.split(steps.decode_octaves(reader, form, sum(rows)), np.cumsum(rows)[:-1])
+    pairs = zip(found, shapes, strict=True)
+    return [np.broadcast_to(octaves[:, None], shape) for octaves, shape in pairs]
+
+
+def _expected(reader: Reader, drawn: dict[str, Integers], octaves: list[Integers]) -> Integers:
+    """What draws tell of the symbols of some tensors."""
+    reaches = [reader.varint("reach", MAX_SYMBOL) for _ in drawn]
+    every = zip(drawn.values(), reaches, octaves, strict=True)
+    return np.concatenate([told(*each).ravel() for each in every])
 
 
 def _matrix_shape(shape: tuple[int, ...]) -> tuple[int, int]:

@@ -1,12 +1,17 @@
-"""A quantisation step in the fewest bytes: none if as before, one byte, float16 or float32."""
+"""A quantisation step in the fewest bytes: none if as before, one byte, float16 or float32.
+
+Where rows matter more or less, symbols of a row are multiples of a power of two: its octave.
+"""
 
 from __future__ import annotations
 
 import struct
 
 import numpy as np
+from numpy.typing import NDArray
 
 from nispcodec.errors import FormatError
+from nispcodec.format.codings import bits
 from nispcodec.format.codings.reader import Reader
 from nispcodec.format.constants import NETS
 
@@ -15,11 +20,26 @@ _BYTE = {(8 + byte % 8) * 2.0 ** (byte // 8 - 30): byte for byte in range(256)}
 _VALUES = list(_BYTE)
 
 
-def encode(path: str, step: float, before: float | None) -> tuple[str, bytes]:
-    """Form and bytes of a step; `before` is that of the record before, if it has one."""
+def has_octaves(step: float) -> bool:
+    """Whether rows may have octaves beside this step."""
+    return float(np.float32(step)) in _BYTE
+
+
+def encode(
+    path: str, step: float, before: float | None, octaves: NDArray[np.integer], width: int
+) -> tuple[str, bytes]:
+    """Form and bytes of a step; `before` is that of the record before, if it has one.
+
+    octaves  (rows,) in `width` bits each, where that is not 0
+    """
     single = float(np.float32(step))
     if not 0 < single < np.inf:
         raise FormatError(NETS, f"{path}.step", "a positive float32", step)
+    if width:
+        widths = np.full(len(octaves), width, np.uint8)
+        return f"rows{width}", bytes([_BYTE[single]]) + bits.encode(
+            octaves.astype(np.uint32), widths
+        )
     if before is not None and single == float(np.float32(before)):
         return "same", b""
     if single in _BYTE:
@@ -29,13 +49,21 @@ def encode(path: str, step: float, before: float | None) -> tuple[str, bytes]:
     return form, struct.pack(_FORMATS[form], single)
 
 
+def decode_octaves(reader: Reader, form: str, rows: int) -> NDArray[np.int64]:
+    """(rows,) the octaves that follow a step; none are 0."""
+    if not form.startswith("rows"):
+        return np.zeros(rows, np.int64)
+    widths = np.full(rows, int(form.removeprefix("rows")), np.uint8)
+    return bits.decode(reader, "octaves", widths).astype(np.int64)
+
+
 def decode(reader: Reader, form: str, before: float | None) -> float:
-    """The inverse of `encode`."""
+    """The inverse of `encode`, but for octaves."""
     if form == "same":
         if before is None:
             raise reader.error("step", "a step in the record before", "none")
         return before
-    if form == "byte":
+    if form == "byte" or form.startswith("rows"):
         return _VALUES[reader.take(1, "step")[0]]
     size = struct.calcsize(_FORMATS[form])
     step = float(struct.unpack(_FORMATS[form], reader.take(size, "step"))[0])

@@ -66,11 +66,9 @@ def decode(
 
 
 def _values(part: Part, coded: Iterator[entropy.Coded]) -> entropy.Coded:
-    """Those of a record, and the bits that they take in the stream."""
-    if part.values is not None:
-        return part.values, 0.0
-    values, bits = next(coded)
-    return values if part.expected is None else values + part.expected, bits
+    """Weights or symbols of a record, and the bits that they take in the stream."""
+    values, bits = next(coded) if part.values is None else (part.values, 0.0)
+    return values if part.step is None else values + part.expected << part.octaves, bits
 
 
 def _section(chosen: list[Record]) -> bytes:

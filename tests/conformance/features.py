@@ -68,11 +68,23 @@ def moved(source: Network, step: float) -> Network:
     tensors, place = {}, 0
     for name, shape in source.spec.shapes.items():
         count = int(np.prod(shape))
-        began = told(draws(source.spec.draw, place, count), 90)
+        began = told(draws(source.spec.draw, place, count), 90, np.zeros(1, np.int64))
         symbols = generator.normal(0, 2 if count > 1 else 60, count).round() + began * (count > 1)
         tensors[name] = symbols.astype(np.float32).reshape(shape) * np.float32(step)
         place += count
     return Network(source.spec, tensors, dict.fromkeys(tensors, step))
+
+
+def rows_apart(width: int) -> Network:
+    """Symbols of draws and more, each row's with an octave of its own, up to so many bits."""
+    source = moved(network((12, 11), 1, 0), 2.0**-10)
+    generator = np.random.default_rng(3)
+    tensors = {}
+    for name, tensor in source.tensors.items():
+        grid = np.float32(2.0**-10) * 2 ** generator.integers(0, 1 << width, (len(tensor), 1))
+        matrix = tensor.reshape(len(tensor), -1)
+        tensors[name] = (np.rint(matrix / grid) * grid).astype(np.float32).reshape(tensor.shape)
+    return Network(source.spec, tensors, source.steps)
 
 
 def pixels(width: int, height: int, seed: int = 0) -> NDArray[np.uint8]:
@@ -140,6 +152,11 @@ def _codings() -> Iterator[tuple[str, bytes]]:
     for number in (0, 2**32 - 1):
         drawn = moved(network((12, 11), 1, 0, draw=number), 0.0078125)
         yield f"coding-drawn-{number}", pack(dataclasses.replace(plain(), sdf=drawn))
+    for width in (1, 2, 3):
+        yield f"octaves-{width}", pack(dataclasses.replace(plain(), sdf=rows_apart(width)))
+    coarse = dataclasses.replace(plain(), sdf=rows_apart(3))
+    for coding in ("dense", "csc", "dia", "entropy"):
+        yield f"octaves-{coding}", pack(coarse, coding)
     long = quantised(pruned(network((182, 182), 1, 12)), 0.0078125)
     yield "coding-entropy-long", pack(dataclasses.replace(plain(), sdf=long), "entropy")
     empty = Network(plain().sdf.spec, {k: v * 0 for k, v in plain().sdf.tensors.items()})

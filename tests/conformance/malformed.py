@@ -321,7 +321,7 @@ def _tensors() -> Iterator[Malformed]:
         "step-zero": (b"\x19\0\0\0\0\x03" + bytes(6), "step"),
         "step-negative": (b"\x19" + struct.pack("<f", -1) + b"\x03" + bytes(6), "step"),
         "step-nan": (b"\x11" + struct.pack("<e", float("nan")) + b"\x03" + bytes(6), "step"),
-        "step-unknown": (b"\x29\0\x03" + bytes(6), "step"),
+        "octaves-tail": (b"\x29\0\x03" + bytes(6), "octaves"),
         "step-same-as-none": (b"\x21\x03" + bytes(6), "step"),
     }
     for name, (tensor, field) in cases.items():
@@ -400,9 +400,11 @@ def _heads() -> Iterator[Malformed]:
     for name, (tensor, field) in cases.items():
         file = container(rows(None, nets(tensor)))
         yield Malformed(name, file, "NETS", f"sdf.weight.0.{field}")
+    last = [dense(count) for count in TENSOR_SIZES[:-1]]
+    file = container(rows(None, b"".join([*last, b"\x3e\0"])))
+    yield Malformed("octaves-cut", file, "NETS", "sdf.bias.1.octaves")
     reaches = {"drawn-reach-large": b"\x80\x80\x80\x04", "drawn-reach-cut": b""}
     for name, reach in reaches.items():
-        last = [dense(count) for count in TENSOR_SIZES[:-1]]
         file = container(rows(None, b"".join([*last, b"\x1f" + step + reach])))
         yield Malformed(name, file, "NETS", "sdf.bias.1.reach")
     # All move as far as symbols go, and where draws end that is further.

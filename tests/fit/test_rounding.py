@@ -16,10 +16,11 @@ from nispcodec.errors import FitError
 from nispcodec.fit.losses import CURVATURES
 from nispcodec.fit.module import Module, snapped
 from nispcodec.fit.prune import everything
-from nispcodec.fit.rounding import nearest, round_weights
+from nispcodec.fit.rounding import HEAD, nearest, round_weights, shared_step
 from nispcodec.fit.task import Batch, Curvature, Rounding
 from nispcodec.fit.train import train
 from nispcodec.format import records
+from nispcodec.format.tensor import Tensor
 from nispcodec.network import Network, NetworkSpec
 from nispcodec.progress import silent
 from tests.fit.test_train import ball_samples, module_of, sdf_task
@@ -69,11 +70,19 @@ def outputs(module: Module, part: Batch) -> torch.Tensor:
     return module(part.points, part.chart).detach()
 
 
-def alone(before: Module, steps: torch.Tensor | None) -> Module:
-    """A copy, each weight rounded to the nearest symbol of its own."""
-    assert steps is not None
+def tensors_of(module: Module) -> list[Tensor]:
+    """As a file has them."""
+    written = records.candidates("sdf", module.network())
+    tensors = {tensor.path: tensor for *_, record in written for tensor in record.tensors}
+    return list(tensors.values())
+
+
+def alone(before: Module, after: Module) -> Module:
+    """A copy, each weight rounded to the nearest symbol of its own, on the other's grid."""
+    assert after.steps is not None
     module = Module(before.spec, "cpu")
-    grid = steps[module.groups]
+    octaves = np.concatenate([tensor.octaves for tensor in tensors_of(after)])
+    grid = after.steps[after.groups] * 2 ** torch.from_numpy(octaves)[after.rows]
     module.weights.data = ((before.weights.detach() / grid).round() * grid).float()
     return module
 
@@ -82,7 +91,7 @@ def alone(before: Module, steps: torch.Tensor | None) -> Module:
 def test_errors_cancel(name: str) -> None:
     """Each weight to its own nearest symbol, on the same grid, changes the answers far more."""
     before, after = rounded(name, 1e-6)
-    part, each_alone = batch(name), alone(before, after.steps)
+    part, each_alone = batch(name), alone(before, after)
     off = [
         (outputs(module, part) - outputs(before, part)).square().mean()
         for module in (after, each_alone)
@@ -93,7 +102,7 @@ def test_errors_cancel(name: str) -> None:
 @pytest.mark.parametrize("price", [1e-2, 1e-3, 1e-4, 1e-5])
 def test_it_is_never_worse_than_each_weight_by_itself(price: float) -> None:
     before, after = rounded("sdf", price)
-    part, each_alone = batch("sdf"), alone(before, after.steps)
+    part, each_alone = batch("sdf"), alone(before, after)
     factors = CURVATURES["sdf"].factors(outputs(before, part), part)[:, 0]
     rises = [
         ((outputs(module, part) - outputs(before, part)) * factors).square().mean()
@@ -143,13 +152,12 @@ def test_a_budget_is_kept(bits: float) -> None:
     module, generator = Module(SPECS["sdf"], "cpu"), torch.Generator().manual_seed(0)
     module.weights.data += module.first * torch.randn(len(module.first), generator=generator) / 2
     count = len(module.weights)
-    round_weights(module, batch("sdf"), Rounding(CURVATURES["sdf"], 1e-3, bits * count), generator)
-    written = records.candidates("sdf", module.network())
-    tensors = {tensor.path: tensor for *_, record in written for tensor in record.tensors}
+    budget = bits * count + HEAD * len(module.scales)
+    round_weights(module, batch("sdf"), Rounding(CURVATURES["sdf"], 1e-3, budget), generator)
     found = sum(
-        tensor.moves.size * max(0.0, math.log2(float(np.abs(tensor.moves).mean()) * 5.18))
-        for tensor in tensors.values()
-        if tensor.moves.any()
+        moves.size * max(0.0, math.log2(float(np.abs(moves).mean()) * 5.18))
+        for moves in (tensor.values(tensor.octaves, True) for tensor in tensors_of(module))
+        if moves.any()
     )
     assert found / count == pytest.approx(bits, rel=0.2)
 
@@ -217,3 +225,34 @@ def test_a_higher_price_buys_fewer_bits() -> None:
 
 def test_without_rounding_the_weights_stay_float() -> None:
     assert not train(sdf_task(50), 0, "cpu", threading.Lock(), silent).steps
+
+
+steps_of_rows = st.lists(st.floats(1e-6, 1e3), min_size=1, max_size=40)
+
+
+@given(steps_of_rows, st.sampled_from([1.0, 30.0]))
+def test_rows_share_a_step_but_for_octaves(steps: list[float], scale: float) -> None:
+    wanted, counts = np.array(steps), np.full(len(steps), 10.0)
+    step, octaves = shared_step(wanted, counts, scale)
+    assert math.frexp(step / scale)[0] * 16 == pytest.approx(
+        round(math.frexp(step / scale)[0] * 16)
+    )
+    assert set(octaves.tolist()) <= set(range(8))
+    assert octaves.max() < 1 or len(steps) > 1
+
+
+def test_rows_that_matter_less_are_rounded_more_coarsely() -> None:
+    wanted = 2.0 ** np.array([-9, -7, -6, -8])
+    step, octaves = shared_step(wanted, np.full(4, 100.0), 1.0)
+    assert (step * 2**octaves).tolist() == wanted.tolist()
+
+
+def test_octaves_that_save_less_than_they_take_are_left_out() -> None:
+    _, octaves = shared_step(np.array([1.0, 1.5, 1.0, 1.3]), np.full(4, 3.0), 1.0)
+    assert not octaves.any()
+
+
+def test_rows_without_weights_have_no_say() -> None:
+    wanted, counts = np.array([1e-6, 0.5, 0.5, 1e-6]), np.array([0.0, 9.0, 9.0, 0.0])
+    assert shared_step(wanted, counts, 1.0)[0] == 0.5
+    assert shared_step(wanted, np.zeros(4), 1.0)[0] == 1.0
