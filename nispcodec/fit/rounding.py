@@ -173,28 +173,31 @@ def _grid(module: Module, order: Tensor, roots: Sequence[Tensor], rounding: Roun
     if rounding.budget:
         steps *= 2 ** _finer(module, order, steps, rounding.budget)
     steps.clamp_(FINEST, COARSEST)
+    # What stands for a loss says too little of charts that are rare to round them more coarsely.
+    most = MAX_OCTAVE if rounding.curvature.own else 0
     held = []
     for scale, found in zip(module.scales.values(), module.rows_of_tensors, strict=True):
-        step, octaves = shared_step(steps[found].numpy(), counts[found].numpy(), scale)
+        step, octaves = shared_step(steps[found].numpy(), counts[found].numpy(), scale, most)
         steps[found] = torch.from_numpy(step * 2**octaves)
         held.append(step)
     module.steps = torch.tensor(held, dtype=torch.float64)
     return steps[module.rows]
 
 
-def shared_step(steps: Doubles, counts: Doubles, scale: float) -> tuple[float, Doubles]:
+def shared_step(steps: Doubles, counts: Doubles, scale: float, most: int) -> tuple[float, Doubles]:
     """One step for a tensor, and for each row an octave of it, in place of `steps` of their own.
 
     counts  (rows,) weights in each row: what a step that is too fine or too coarse costs them in
             bits is weighed against the bits of octaves
     scale   of which the step has few digits
+    most    octaves
     """
     wanted = np.log2(steps[counts > 0]) if counts.any() else np.zeros(1)
     first, last = float(wanted.min()), float(wanted.max())
     exponents = np.arange(first, min(last, first + MAX_OCTAVE) + SIXTEENTHS, SIXTEENTHS)
     best: tuple[float, float, Doubles] | None = None
     for step in sorted({snapped(2.0**exponent / scale) * scale for exponent in exponents.tolist()}):
-        for width in range(MAX_OCTAVE.bit_length() + 1 if len(steps) > 1 else 1):
+        for width in range(most.bit_length() + 1 if len(steps) > 1 else 1):
             octaves = np.clip(np.rint(np.log2(steps / step)), 0, (1 << width) - 1)
             off = step * 2**octaves / steps
             bits = counts @ (off**2 / (2 * math.log(2)) - np.log2(off)) + width * len(steps)

@@ -1,11 +1,13 @@
 """Which charts share a number: mirror images, and charts far apart whose UVs go together.
 
 A position tells such charts apart already, so the networks need a number only to keep neighbours
-apart: some hundred charts become a few dozen labels.
+apart: some hundred charts become a few dozen labels. Some more make UVs easier to learn.
 """
 
 from __future__ import annotations
 
+import math
+from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -18,8 +20,23 @@ from scipy.spatial import cKDTree
 from nispcodec.asset import FloatArray
 from nispcodec.mesh.charts import Charts, colored
 
+Kind = tuple[int, bool]
+"""Material of a chart, and whether it has UVs."""
+
 RIDGE = 1e-4
 """Keeps the direction across a flat chart, of which nothing is known, from deciding anything."""
+
+FLOOR = 1e-3
+"""UVs nearer than this to an affine map are as good as on it."""
+
+SHARES = 0.0, 0.125, 0.25, 0.5, 0.75, 1.0
+"""How many more labels than are needed are tried."""
+WORTH = 1.5
+"""Bits a point that twice the labels have to save."""
+
+SWEEPS = 10
+MANY = 2000
+"""From so many charts on only the labels that are needed are tried, without another look."""
 
 
 @dataclass(frozen=True)
@@ -43,7 +60,8 @@ def merge_charts(charts: Charts, cover: Cover, twins: NDArray[np.integer], gap: 
 
     twins (t, 2): pairs of charts whose UVs are the same function of `coordinates`, near or far.
     Of all charts that could share a number those do whose UVs are most nearly one affine map of the
-    coordinates: the least is left to learn for the UV network.
+    coordinates: the least is left to learn for the UV network. There are more numbers than needed
+    where that saves enough.
     """
     alike = (charts.materials[twins] == charts.materials[twins[:, :1]]).all(axis=1)
     group = _groups(len(charts), twins[alike])
@@ -52,45 +70,93 @@ def merge_charts(charts: Charts, cover: Cover, twins: NDArray[np.integer], gap: 
     kinds = [(int(charts.materials[i]), bool(charts.has_uv[i])) for i in first]
     numbers = group[cover.charts]
     neighbours = _neighbours(count, cover.points, numbers, gap)
-    _, palette = colored(neighbours, kinds)  # as few labels as the first that is free would take
-    fits = _Fits(count, cover, numbers)
-    labels, palette = colored(neighbours, kinds, palette, fits.choose)
+    _, needed = colored(neighbours, kinds)
+    moments = _moments(count, cover, numbers)
+    shares = SHARES if count < MANY else SHARES[:1]
+    tried = [_Fits(moments, neighbours, kinds, _more(needed, share)) for share in shares]
+    costs = [fits.mean_bits + WORTH * share for fits, share in zip(tried, shares, strict=True)]
+    best = tried[int(np.argmin(costs))]
+    used, numbered = np.unique(best.labels, return_inverse=True)
     return Charts(
-        np.asarray(labels, dtype=np.int32)[group][charts.face_charts],
-        np.asarray([material for material, _ in palette], dtype=np.int32),
-        np.asarray([has_uv for _, has_uv in palette], dtype=bool),
+        numbered.astype(np.int32)[group][charts.face_charts],
+        np.asarray([best.palette[label][0] for label in used], dtype=np.int32),
+        np.asarray([best.palette[label][1] for label in used], dtype=bool),
     )
 
 
+def _more(needed: Sequence[Kind], share: float) -> list[Kind]:
+    """The kinds of the labels that are needed, and those with UVs so much more often."""
+    textured = Counter(kind for kind in needed if kind[1])
+    return [*needed, *(k for k, n in textured.items() for _ in range(math.ceil(n * share)))]
+
+
+def _moments(count: int, cover: Cover, numbers: NDArray[np.integer]) -> FloatArray:
+    """(count, d + 3, d + 3): of each chart the sums of products of coordinates, 1 and UVs."""
+    ones = np.ones((len(numbers), 1))
+    rows = np.hstack([cover.coordinates, ones, cover.uvs])
+    size = rows.shape[1]
+    products = (rows[:, :, None] * rows[:, None, :]).reshape(len(rows), -1)
+    member = coo_matrix((ones[:, 0], (numbers, np.arange(len(rows)))), (count, len(rows)))
+    moments: FloatArray = (member @ products).reshape(count, size, size)
+    return moments
+
+
 class _Fits:
-    """How far the UVs of some charts are from one affine map: moments of charts add up."""
+    """Labels so that the UVs of each are nearly one affine map: moments of charts add up."""
 
-    def __init__(self, count: int, cover: Cover, numbers: NDArray[np.integer]) -> None:
-        ones = np.ones((len(numbers), 1))
-        rows = np.hstack([cover.coordinates, ones, cover.uvs])
-        self.size = rows.shape[1]
-        products = (rows[:, :, None] * rows[:, None, :]).reshape(len(rows), -1)
-        member = coo_matrix((ones[:, 0], (numbers, np.arange(len(rows)))), (count, len(rows)))
-        self.moments = (member @ products).reshape(count, self.size, self.size)
-        self.mixed = np.zeros((2 * count, self.size, self.size))
-        self.left = np.zeros(2 * count)
+    def __init__(
+        self,
+        moments: FloatArray,
+        neighbours: list[set[int]],
+        kinds: list[Kind],
+        palette: Sequence[Kind],
+    ) -> None:
+        self.moments, self.neighbours, self.kinds = moments, neighbours, kinds
+        most = len(palette) + len(moments)
+        self.mixed = np.zeros((most, *moments.shape[1:]))
+        self.bits = np.zeros(most)
+        self.labels, self.palette = colored(neighbours, kinds, palette, self._choose)
+        sweeps = SWEEPS if len(moments) < MANY else 0
+        while sweeps and self._sweep():
+            sweeps -= 1
 
-    def choose(self, chart: int, colors: Sequence[int]) -> int:
-        """The colour whose UVs fit worse by the least with this chart, which is added to it."""
-        together = self.mixed[colors] + self.moments[chart]
-        left = self._left(together)
-        best = int(np.argmin(left - self.left[colors]))
-        color = colors[best]
-        self.mixed[color], self.left[color] = together[best], left[best]
-        return color
+    @property
+    def mean_bits(self) -> float:
+        """How far points are from their label's map, in octaves."""
+        return float(self.bits.sum() / self.moments[:, -3, -3].sum())
 
-    def _left(self, moments: FloatArray) -> FloatArray:
-        """Sums of squares (n,) that least squares leaves, by moments (n, size, size)."""
-        known = moments[:, :-2, :-2] + RIDGE * np.eye(self.size - 2)
-        cross = moments[:, :-2, -2:]
-        explained = np.einsum("nij,nij->n", cross, np.linalg.solve(known, cross))
-        left: FloatArray = np.trace(moments[:, -2:, -2:], axis1=1, axis2=2) - explained
-        return left
+    def _choose(self, chart: int, labels: Sequence[int]) -> int:
+        """The label that it costs the least to add this chart to, which is done."""
+        together = self.mixed[labels] + self.moments[chart]
+        bits = _bits(together)
+        best = int(np.argmin(bits - self.bits[labels]))
+        label = labels[best]
+        self.mixed[label], self.bits[label] = together[best], bits[best]
+        return label
+
+    def _sweep(self) -> bool:
+        """Look once more at each chart, now that all others have labels; whether any moved."""
+        before = list(self.labels)
+        for chart, label in enumerate(before):
+            self.mixed[label] -= self.moments[chart]
+            self.bits[label] = _bits(self.mixed[label][None])[0]
+            taken = {self.labels[other] for other in self.neighbours[chart]}
+            kind = self.kinds[chart]
+            free = [n for n, k in enumerate(self.palette) if k == kind and n not in taken]
+            self.labels[chart] = self._choose(chart, free)
+        return self.labels != before
+
+
+def _bits(moments: FloatArray) -> FloatArray:
+    """(n,) logarithms of how far UVs are from the affine maps of least squares, for every point."""
+    points, size = moments[:, -3, -3], moments.shape[1]
+    known = moments[:, :-2, :-2] + RIDGE * np.eye(size - 2)
+    cross = moments[:, :-2, -2:]
+    explained = np.einsum("nij,nij->n", cross, np.linalg.solve(known, cross))
+    left = np.trace(moments[:, -2:, -2:], axis1=1, axis2=2) - explained
+    apart = np.maximum(left, 0) / np.maximum(points, 1) + FLOOR**2
+    bits: FloatArray = 0.5 * points * np.log2(apart)
+    return bits
 
 
 def _groups(count: int, pairs: NDArray[np.integer]) -> NDArray[np.int32]:

@@ -233,7 +233,7 @@ steps_of_rows = st.lists(st.floats(1e-6, 1e3), min_size=1, max_size=40)
 @given(steps_of_rows, st.sampled_from([1.0, 30.0]))
 def test_rows_share_a_step_but_for_octaves(steps: list[float], scale: float) -> None:
     wanted, counts = np.array(steps), np.full(len(steps), 10.0)
-    step, octaves = shared_step(wanted, counts, scale)
+    step, octaves = shared_step(wanted, counts, scale, 7)
     assert math.frexp(step / scale)[0] * 16 == pytest.approx(
         round(math.frexp(step / scale)[0] * 16)
     )
@@ -243,16 +243,16 @@ def test_rows_share_a_step_but_for_octaves(steps: list[float], scale: float) -> 
 
 def test_rows_that_matter_less_are_rounded_more_coarsely() -> None:
     wanted = 2.0 ** np.array([-9, -7, -6, -8])
-    step, octaves = shared_step(wanted, np.full(4, 100.0), 1.0)
+    step, octaves = shared_step(wanted, np.full(4, 100.0), 1.0, 7)
     assert (step * 2**octaves).tolist() == wanted.tolist()
 
 
 def test_octaves_that_save_less_than_they_take_are_left_out() -> None:
-    _, octaves = shared_step(np.array([1.0, 1.5, 1.0, 1.3]), np.full(4, 3.0), 1.0)
+    _, octaves = shared_step(np.array([1.0, 1.5, 1.0, 1.3]), np.full(4, 3.0), 1.0, 7)
     assert not octaves.any()
 
 
 def test_rows_without_weights_have_no_say() -> None:
     wanted, counts = np.array([1e-6, 0.5, 0.5, 1e-6]), np.array([0.0, 9.0, 9.0, 0.0])
-    assert shared_step(wanted, counts, 1.0)[0] == 0.5
-    assert shared_step(wanted, np.zeros(4), 1.0)[0] == 1.0
+    assert shared_step(wanted, counts, 1.0, 7)[0] == 0.5
+    assert shared_step(wanted, np.zeros(4), 1.0, 7)[0] == 1.0

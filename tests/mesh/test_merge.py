@@ -78,3 +78,21 @@ def test_mirrored_halves_with_the_same_uvs_are_one_chart(same: bool) -> None:
     sampler = Sampler(soup(both, uvs), seed=0, gap=1.0)
     assert sampler.patches == 2
     assert len(sampler.charts) == (1 if same else 2)
+
+
+def test_more_numbers_than_needed_where_uvs_are_told_apart_by_them() -> None:
+    """Charts far apart, which one number would do for, of two maps: two numbers."""
+    slopes = [2.0, -2.0] * 6
+    merged = merge_charts(*line_of_charts([0] * 12, None, slopes), NO_TWINS, 0.3)
+    labels = merged.face_charts.tolist()
+    assert labels[::2] == [labels[0]] * 6
+    assert labels[1::2] == [labels[1]] * 6
+    assert len(merged) == 2
+
+
+def test_charts_that_were_met_first_are_looked_at_again() -> None:
+    """The second of three numbers that go together is free only once all have been met."""
+    slopes = [1.0, -1.0, 0.0, 0.0, 1.0, -1.0, -1.0, 0.0, 1.0]
+    places = [100.0 * (i // 3) + i % 3 for i in range(9)]
+    merged = merge_charts(*line_of_charts([0] * 9, places, slopes), NO_TWINS, 3.0)
+    assert len({(int(n), slope) for n, slope in zip(merged.face_charts, slopes, strict=True)}) == 3
