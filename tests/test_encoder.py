@@ -24,7 +24,7 @@ def short(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(
         presets, "EFFORTS", dict.fromkeys(presets.EFFORTS, Effort(0.2, 0.6, 1, 100))
     )
-    monkeypatch.setattr(presets, "PROBE_STEPS", dict.fromkeys(presets.PROBE_STEPS, 30))
+    monkeypatch.setattr(presets, "PROBE_STEPS", 30)
     monkeypatch.setattr(presets, "PAPER_STEPS", 60)
     monkeypatch.setattr(presets, "PRICES", dict.fromkeys(presets.PRICES, 1e-6))
     for name in ("NEAR", "TIGHT", "CUBE", "WIDE", "SKIN", "DETAIL", "HELD_OUT", "PAPER"):

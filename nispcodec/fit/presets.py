@@ -58,7 +58,7 @@ SDF_LAST = 0.3
 """Relative rate of the SDF's last layer: its bias moves the whole field at once."""
 
 PROBE_HIDDEN = {"sdf": (24,) * 4, "chart": (24,) * 3, "uv": (24,) * 4}
-PROBE_STEPS = {"sdf": 1500, "chart": 600, "uv": 1500}
+PROBE_STEPS = 1500
 
 
 @dataclass(frozen=True)
@@ -79,7 +79,7 @@ class Effort:
 
 EFFORTS = {
     "fast": Effort(18.0, 0.8, 3, 800, PROBE_BAND),
-    "balanced": Effort(74.0, 1.0, 9, 800),
+    "balanced": Effort(100.0, 1.0, 9, 800),
     "best": Effort(560.0, 1.2, 15, 4000),
 }
 
@@ -130,7 +130,7 @@ def probes(problem: Problem) -> list[Task]:
     """Small networks and short fits that tell how much there is to learn."""
     specs = problem.specs(PROBE_HIDDEN)
     return [
-        _task(problem.sets, name, spec, _schedule(name, PROBE_STEPS[name], PROBE_BAND))
+        _task(problem.sets, name, spec, _schedule(name, PROBE_STEPS, PROBE_BAND))
         for name, spec in specs.items()
     ]
 

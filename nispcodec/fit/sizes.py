@@ -40,8 +40,8 @@ class Model:
 
 MODELS = {
     "sdf": Model(33, 1.0e-3, 0.7, 22, 34),
-    "chart": Model(9.65, 0.03, 0.6, 16, 44),
-    "uv": Model(18, 9.3e-4, 0.6, 12, 30),
+    "chart": Model(30, 0.056, 0.6, 16, 44),
+    "uv": Model(19.5, 9.3e-4, 0.6, 12, 30),
 }
 
 AREA, AREA_POWER = 5.0, 0.4

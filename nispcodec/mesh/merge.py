@@ -31,7 +31,7 @@ FLOOR = 1e-3
 
 SHARES = 0.0, 0.125, 0.25, 0.5, 0.75, 1.0
 """How many more labels than are needed are tried."""
-WORTH = 1.5
+WORTH = 3.0
 """Bits a point that twice the labels have to save."""
 
 SWEEPS = 10
