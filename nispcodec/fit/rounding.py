@@ -24,8 +24,9 @@ from nispcodec.fit.task import Batch, Curvature, Rounding
 
 SAMPLES, MOST_SAMPLES, DERIVATIVES = 8_000, 32_000, 60_000_000
 """Points that the second derivatives are a mean over: more where there are few weights."""
-BLOCK = 2_500
-"""Weights of which all pairs are looked at together: beyond, memory and time run away."""
+WHOLE, BLOCK = 5_000, 2_500
+"""Weights of which all pairs are looked at together: of a whole network, or of a block of a larger
+one. Beyond, memory and time run away."""
 
 ENTRIES = 4_000_000
 SHARES = 0.0, 0.1, 0.3, 1.0
@@ -53,7 +54,7 @@ def round_weights(
     # The last of a block is rounded first: so it goes from the first layer to the last, in which
     # the outputs are linear and what went wrong before is made up for best.
     order = module.places.flip(0)
-    blocks = torch.split(order, BLOCK)
+    blocks = torch.split(order, len(order) if len(order) <= WHOLE else BLOCK)
     roots = rise.roots(blocks, generator)
     grid = _grid(module, order, roots, rounding)
     for places, root in zip(reversed(blocks), reversed(roots), strict=True):
@@ -119,15 +120,15 @@ class _Rise:
         """Upper Cholesky factors of its second derivatives, block by block."""
         weights, batch = self.module.weights.detach(), self.batch
         sums = [torch.zeros(len(block), len(block), device=weights.device) for block in blocks]
-        order = torch.cat(list(blocks)).to(weights.device)
         size = max(1, min(len(batch), ENTRIES // len(weights)))
         # One direction for each point in place of all, right in the mean.
         signs = torch.randint(2, self.factors.shape[::2], generator=generator) * 2.0 - 1
         directions = (self.factors @ signs.to(weights)[:, :, None])[:, :, 0]
         for points in torch.split(torch.arange(len(batch), device=weights.device), size):
             part, along = batch.chosen(points), directions[points]
-            slopes = _slopes(self.module, weights, part, along).index_select(1, order)
-            for rows, total in zip(torch.split(slopes, BLOCK, dim=1), sums, strict=True):
+            slopes = _slopes(self.module, weights, part, along)
+            for block, total in zip(blocks, sums, strict=True):
+                rows = slopes.index_select(1, block.to(slopes.device))
                 total.addmm_(rows.T, rows, alpha=1 / len(batch))
         return [_root(total.cpu().double(), self.damping) for total in sums]
 
