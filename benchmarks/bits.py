@@ -2,9 +2,10 @@
 
     python -m benchmarks.bits FOLDER [-o benchmarks/results/bits.json]
 
-Predicted: the entropy of a Gaussian of each tensor's power on the grid of its step, as in
-`nispcodec.fit.rounding`. Beside it, what rounding every weight one step nearer to 0 would save: the
-most that a rounding which weighs rate against distortion could gain, were distortion free.
+Predicted: the entropy of a Gaussian of the power of each tensor's symbols, less what draws tell of
+them, as in `nispcodec.fit.rounding`. Beside it, what rounding every weight one step nearer to what
+draws tell would save: the most that a rounding which weighs rate against distortion could gain,
+were distortion free.
 """
 
 from __future__ import annotations
@@ -17,8 +18,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from benchmarks.machine import commit
-from nispcodec.fit.rounding import GAUSSIAN_BITS
-from nispcodec.format import unpack, weights
+from nispcodec.fit.rounding import GAUSSIAN_BITS, HEAD
+from nispcodec.format import records, unpack, weights
 from nispcodec.format.constants import NETS
 from nispcodec.format.container import read_container, write_container
 from nispcodec.network import Network
@@ -27,14 +28,15 @@ Record = dict[str, float]
 
 
 def symbols_of(network: Network) -> list[NDArray[np.float64]]:
-    """The integers of each tensor."""
-    return [np.rint(network.tensors[name] / step) for name, step in network.steps.items()]
+    """The integers of each tensor that are written."""
+    every = records.tensors("network", network)
+    return [tensor.values(tensor.octaves, True).astype(np.float64) for tensor in every]
 
 
 def entropy(symbols: NDArray[np.float64]) -> float:
     """Bits of a tensor as the encoder counts them."""
     log_spread = 0.5 * np.log2(np.square(symbols).mean() + 1e-12) + GAUSSIAN_BITS
-    return float(symbols.size * np.logaddexp2(0, 2 * log_spread) / 2)
+    return float(symbols.size * np.logaddexp2(0, 2 * log_spread) / 2) + HEAD
 
 
 def written(network: Network) -> int:

@@ -18,7 +18,7 @@ LAYERS = 4
 MIN_WIDTH, MAX_WIDTH = 8, 128
 MULTIPLE = 2
 
-BITS = {"sdf": 7.1, "chart": 6.5, "uv": 9.2}
+BITS = {"sdf": 7.0, "chart": 6.4, "uv": 8.6}
 """About what a weight takes in the file at the default price: medians of eight assets."""
 
 

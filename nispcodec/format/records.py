@@ -106,16 +106,13 @@ Candidate = tuple[int, int, Record]
 
 
 def candidates(name: str, network: Network) -> list[Candidate]:
-    """Every record that tensors of a network can make.
-
-    Raises `FormatError` for weights that are not multiples of their step.
-    """
-    tensors = _prepare(name, network)
+    """Every record that tensors of a network can make."""
+    every = tensors(name, network)
     found = []
-    for start in range(len(tensors)):
-        before = tensors[start - 1].step if start else None
-        for end in range(start + 1, min(start + 1 + MAX_JOINED, len(tensors)) + 1):
-            run = tensors[start:end]
+    for start in range(len(every)):
+        before = every[start - 1].step if start else None
+        for end in range(start + 1, min(start + 1 + MAX_JOINED, len(every)) + 1):
+            run = every[start:end]
             if run[-1].step != run[0].step:
                 break
             found += [(start, end, record) for record in _records(run, before)]
@@ -143,15 +140,19 @@ def cheapest(candidates: list[Candidate], codings: tuple[str, ...]) -> list[Reco
     return plans[max(plans)][1]
 
 
-def _prepare(name: str, network: Network) -> list[Tensor]:
-    tensors, drawn = [], _drawn(network.spec, network.tensors)
+def tensors(name: str, network: Network) -> list[Tensor]:
+    """Those of a network, as they are written.
+
+    Raises `FormatError` for weights that are not multiples of their step.
+    """
+    found, drawn = [], _drawn(network.spec, network.tensors)
     for key, tensor in network.tensors.items():
         path, step = f"{name}.{key}", network.steps.get(key)
         # Adding 0 makes -0 a 0.
         values = tensor + np.float32(0) if step is None else _symbols(path, tensor, step)
         shape = _matrix_shape(tensor.shape)
-        tensors.append(Tensor(path, step, values.reshape(shape), drawn[key]))
-    return tensors
+        found.append(Tensor(path, step, values.reshape(shape), drawn[key]))
+    return found
 
 
 def _drawn(spec: NetworkSpec, names: Iterable[str]) -> dict[str, Integers]:

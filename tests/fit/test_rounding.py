@@ -20,7 +20,6 @@ from nispcodec.fit.rounding import HEAD, nearest, round_weights, shared_step
 from nispcodec.fit.task import Batch, Curvature, Rounding
 from nispcodec.fit.train import train
 from nispcodec.format import records
-from nispcodec.format.tensor import Tensor
 from nispcodec.network import Network, NetworkSpec
 from nispcodec.progress import silent
 from tests.fit.test_train import ball_samples, module_of, sdf_task
@@ -70,18 +69,11 @@ def outputs(module: Module, part: Batch) -> torch.Tensor:
     return module(part.points, part.chart).detach()
 
 
-def tensors_of(module: Module) -> list[Tensor]:
-    """As a file has them."""
-    written = records.candidates("sdf", module.network())
-    tensors = {tensor.path: tensor for *_, record in written for tensor in record.tensors}
-    return list(tensors.values())
-
-
 def alone(before: Module, after: Module) -> Module:
     """A copy, each weight rounded to the nearest symbol of its own, on the other's grid."""
     assert after.steps is not None
     module = Module(before.spec, "cpu")
-    octaves = np.concatenate([tensor.octaves for tensor in tensors_of(after)])
+    octaves = np.concatenate([tensor.octaves for tensor in records.tensors("sdf", after.network())])
     grid = after.steps[after.groups] * 2 ** torch.from_numpy(octaves)[after.rows]
     module.weights.data = ((before.weights.detach() / grid).round() * grid).float()
     return module
@@ -156,7 +148,9 @@ def test_a_budget_is_kept(bits: float) -> None:
     round_weights(module, batch("sdf"), Rounding(CURVATURES["sdf"], 1e-3, budget), generator)
     found = sum(
         moves.size * max(0.0, math.log2(float(np.abs(moves).mean()) * 5.18))
-        for moves in (tensor.values(tensor.octaves, True) for tensor in tensors_of(module))
+        for moves in (
+            each.values(each.octaves, True) for each in records.tensors("sdf", module.network())
+        )
         if moves.any()
     )
     assert found / count == pytest.approx(bits, rel=0.2)
