@@ -24,7 +24,7 @@ from nispcodec.fit.task import Batch, Curvature, Rounding
 
 SAMPLES, MOST_SAMPLES, DERIVATIVES = 8_000, 32_000, 60_000_000
 """Points that the second derivatives are a mean over: more where there are few weights."""
-WHOLE, BLOCK = 5_000, 2_500
+WHOLE, BLOCK = 7_000, 2_500
 """Weights of which all pairs are looked at together: of a whole network, or of a block of a larger
 one. Beyond, memory and time run away."""
 
@@ -145,13 +145,13 @@ def _slopes(module: Module, weights: Tensor, batch: Batch, directions: Tensor) -
 
 
 def _root(square: Tensor, damping: float) -> Tensor:
-    """Upper Cholesky factor, with ten times the damping until there is one."""
+    """Upper Cholesky factor of `square`, which is damped, with ten times as much until it has one."""
     mean = float(square.diagonal().mean()) + TINY
     if not math.isfinite(mean):
         raise FitError("weights cannot be rounded: expected finite derivatives, found NaN")
     while True:
-        damped = square + damping * mean * torch.eye(len(square), dtype=square.dtype)
-        root, failed = torch.linalg.cholesky_ex(damped, upper=True)
+        square.diagonal().add_(damping * mean)
+        root, failed = torch.linalg.cholesky_ex(square, upper=True)
         if not failed:
             return root
         damping *= 10
