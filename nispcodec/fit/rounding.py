@@ -145,7 +145,7 @@ def _slopes(module: Module, weights: Tensor, batch: Batch, directions: Tensor) -
 
 
 def _root(square: Tensor, damping: float) -> Tensor:
-    """Upper Cholesky factor of `square`, which is damped, with ten times as much until it has one."""
+    """Upper Cholesky factor of `square`, which is damped, ten times as much until it has one."""
     mean = float(square.diagonal().mean()) + TINY
     if not math.isfinite(mean):
         raise FitError("weights cannot be rounded: expected finite derivatives, found NaN")
