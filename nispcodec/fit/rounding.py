@@ -24,7 +24,7 @@ from nispcodec.fit.task import Batch, Curvature, Rounding
 
 SAMPLES, MOST_SAMPLES, DERIVATIVES = 8_000, 32_000, 60_000_000
 """Points that the second derivatives are a mean over: more where there are few weights."""
-WHOLE, BLOCK = 7_000, 2_500
+WHOLE, BLOCK = 5_000, 2_500
 """Weights of which all pairs are looked at together: of a whole network, or of a block of a larger
 one. Beyond, memory and time run away."""
 
