@@ -6,13 +6,15 @@ The one description that the fit, the format and the decoder share; evaluation i
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import math
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
 
+from nispcodec.draw import Integers, draws
 from nispcodec.errors import FormatError
 
 Weights = NDArray[np.float32]
@@ -28,6 +30,7 @@ MAX_WIDTH = 1024
 MAX_HIDDEN_LAYERS = 32
 MAX_CHARTS = 65_535
 MAX_DRAW = 2**32 - 1
+MAX_OCTAVE = 7
 
 
 @dataclass(frozen=True)
@@ -121,6 +124,18 @@ class NetworkSpec:
             shapes[f"weight.{layer}"] = (fan_out, fan_in)
             shapes[f"bias.{layer}"] = (fan_out,)
         return shapes
+
+    def drawn(self, names: Iterable[str]) -> dict[str, Integers]:
+        """The draws that each of these tensors begins from, in its shape."""
+        shapes, first = self.shapes, 0
+        places: dict[str, int] = {}
+        for name, shape in shapes.items():
+            places[name] = first
+            first += math.prod(shape)
+        return {
+            name: draws(self.draw, places[name], math.prod(shapes[name])).reshape(shapes[name])
+            for name in names
+        }
 
     @property
     def weight_count(self) -> int:

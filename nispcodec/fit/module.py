@@ -10,7 +10,7 @@ import torch
 from torch import Tensor
 from torch.nn import functional
 
-from nispcodec.draw import BITS, draws
+from nispcodec.draw import BITS
 from nispcodec.fit.frames import affine_maps
 from nispcodec.fit.prune import Mask
 from nispcodec.fit.stack import Matrices
@@ -132,12 +132,8 @@ class Module:
     def rows(self) -> Tensor:
         """For each number of the vector that of its matrix' row; a bias is one row."""
         lengths = [shape[-1] for shape in self._shapes.values()]
-        every = [
-            length
-            for length, rows in zip(lengths, self._rows_each, strict=True)
-            for _ in range(rows)
-        ]
-        return torch.repeat_interleave(torch.arange(len(every)), torch.tensor(every))
+        every = torch.repeat_interleave(torch.tensor(lengths), torch.tensor(self._rows_each))
+        return torch.repeat_interleave(torch.arange(len(every)), every)
 
     @property
     def rows_of_tensors(self) -> list[slice]:
@@ -207,14 +203,10 @@ def _fourier(points: Tensor, levels: int) -> Tensor:
 def _initial(spec: NetworkSpec) -> dict[str, Tensor]:
     """Draws (`nispcodec.draw`), each tensor within its bound."""
     bounds = _bounds(spec)
-    tensors: dict[str, Tensor] = {}
-    place = 0
-    for name, shape in spec.shapes.items():
-        count = math.prod(shape)
-        share = draws(spec.draw, place, count) / (1 << BITS)
-        tensors[name] = torch.from_numpy(share.reshape(shape) * bounds[name]).float()
-        place += count
-    return tensors
+    return {
+        name: torch.from_numpy(drawn / (1 << BITS) * bounds[name]).float()
+        for name, drawn in spec.drawn(spec.shapes).items()
+    }
 
 
 def _bounds(spec: NetworkSpec) -> dict[str, float]:

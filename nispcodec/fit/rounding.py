@@ -21,6 +21,7 @@ from torch.nn import functional
 from nispcodec.errors import FitError
 from nispcodec.fit.module import Module, snapped
 from nispcodec.fit.task import Batch, Curvature, Rounding
+from nispcodec.network import MAX_OCTAVE
 
 SAMPLES, MOST_SAMPLES, DERIVATIVES = 8_000, 32_000, 60_000_000
 """Points that the second derivatives are a mean over: more where there are few weights."""
@@ -36,7 +37,7 @@ HEAD = 52
 """Bits of what a file says of a tensor besides its symbols."""
 GAUSSIAN_BITS = 0.5 * math.log2(2 * math.pi * math.e)
 FINEST, COARSEST = 1e-6, 1e3
-MAX_OCTAVE, SIXTEENTHS = 7, 1 / 16
+SIXTEENTHS = 1 / 16
 OCTAVES, CLOSE = 32.0, 1e-3
 TINY = 1e-30
 

@@ -3,16 +3,15 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
-from itertools import accumulate
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from nispcodec.draw import Integers, draws, told
+from nispcodec.draw import Integers, told
 from nispcodec.errors import FormatError
 from nispcodec.format import steps
 from nispcodec.format.codings import coo, csc, csr, dense, dia, entropy
@@ -145,25 +144,14 @@ def tensors(name: str, network: Network) -> list[Tensor]:
 
     Raises `FormatError` for weights that are not multiples of their step.
     """
-    found, drawn = [], _drawn(network.spec, network.tensors)
+    found, drawn = [], network.spec.drawn(network.tensors)
     for key, tensor in network.tensors.items():
         path, step = f"{name}.{key}", network.steps.get(key)
         # Adding 0 makes -0 a 0.
         values = tensor + np.float32(0) if step is None else _symbols(path, tensor, step)
         shape = _matrix_shape(tensor.shape)
-        found.append(Tensor(path, step, values.reshape(shape), drawn[key]))
+        found.append(Tensor(path, step, values.reshape(shape), drawn[key].reshape(shape)))
     return found
-
-
-def _drawn(spec: NetworkSpec, names: Iterable[str]) -> dict[str, Integers]:
-    """Of each of these tensors the draws that it began from, in 2-D."""
-    shapes = {name: _matrix_shape(shape) for name, shape in spec.shapes.items()}
-    ends = accumulate(math.prod(shape) for shape in shapes.values())
-    first = {name: end - math.prod(shapes[name]) for name, end in zip(shapes, ends, strict=True)}
-    return {
-        name: draws(spec.draw, first[name], math.prod(shapes[name])).reshape(shapes[name])
-        for name in names
-    }
 
 
 def read(reader: Reader, path: str, spec: NetworkSpec) -> list[Part]:
@@ -197,7 +185,7 @@ def _read(reader: Reader, left: list[str], spec: NetworkSpec, before: float | No
     if coding not in STREAMED:
         values = _OWN[coding].decode(reader, shapes[0], step is not None).ravel()
         return Part(names, step, values, None, octaves, _NONE[0])
-    expected = _expected(reader, _drawn(spec, names), every) if coding == "drawn" else _NONE[0]
+    expected = _expected(reader, spec.drawn(names), every) if coding == "drawn" else _NONE[0]
     count = sum(math.prod(shape) for shape in shapes)
     head = entropy.read_head(reader, count, step is not None)
     return Part(names, step, None, head, octaves, expected)
@@ -215,7 +203,8 @@ def _expected(reader: Reader, drawn: dict[str, Integers], octaves: list[Integers
     """What draws tell of the symbols of some tensors."""
     reaches = [reader.varint("reach", MAX_SYMBOL) for _ in drawn]
     every = zip(drawn.values(), reaches, octaves, strict=True)
-    return np.concatenate([told(*each).ravel() for each in every])
+    parts = [told(draw.reshape(each.shape), reach, each) for draw, reach, each in every]
+    return np.concatenate([part.ravel() for part in parts])
 
 
 def _matrix_shape(shape: tuple[int, ...]) -> tuple[int, int]:

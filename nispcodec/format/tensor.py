@@ -10,7 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from nispcodec.draw import BITS, Integers, told
-from nispcodec.format.constants import MAX_OCTAVE, MAX_SYMBOL
+from nispcodec.format.constants import MAX_SYMBOL
+from nispcodec.network import MAX_OCTAVE
 
 
 @dataclass(frozen=True)
