@@ -146,13 +146,13 @@ def _slopes(module: Module, weights: Tensor, batch: Batch, directions: Tensor) -
 
 
 def _root(square: Tensor, damping: float) -> Tensor:
-    """Upper Cholesky factor of `square`, which is damped, ten times as much until it has one."""
+    """Upper Cholesky factor, with ten times the damping until there is one."""
     mean = float(square.diagonal().mean()) + TINY
     if not math.isfinite(mean):
         raise FitError("weights cannot be rounded: expected finite derivatives, found NaN")
     while True:
-        square.diagonal().add_(damping * mean)
-        root, failed = torch.linalg.cholesky_ex(square, upper=True)
+        damped = square + damping * mean * torch.eye(len(square), dtype=square.dtype)
+        root, failed = torch.linalg.cholesky_ex(damped, upper=True)
         if not failed:
             return root
         damping *= 10
