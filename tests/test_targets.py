@@ -28,9 +28,8 @@ TABLE = ChartTable(materials=np.zeros(1, np.int32), has_uv=np.zeros(1, np.bool_)
 def problem() -> Problem:
     samples, held_out = ball_samples(4000, 0), ball_samples(500, 1)
     held_out = replace(held_out, sdf=np.zeros_like(held_out.sdf))
-    return Problem(
-        TrainingSets(samples, samples, held_out, held_out, samples), 1, False, 5.0, Mirrors(0, 0)
-    )
+    sets = TrainingSets(samples, samples, held_out, held_out, samples, samples[:0])
+    return Problem(sets, 1, False, 5.0, Mirrors(0, 0))
 
 
 def really(tasks: list[Task], listen: Listener) -> Networks:

@@ -53,7 +53,7 @@ def paper_networks(path: Path, steps: int) -> list[Task]:
     """The chart and the UV network with the paper's losses, optimiser and rates."""
     sampler = Sampler(load_mesh(path), SEED)
     samples, surface = sampler.importance(SAMPLES), sampler.surface(TEST)
-    sets = TrainingSets(samples, samples, sampler.near(1, SKIN), surface, samples)
+    sets = TrainingSets(samples, samples, sampler.near(1, SKIN), surface, samples, samples[:0])
     _, chart, uv = paper_tasks(len(sampler.table), sets)
     schedule = replace(chart.schedule, steps=steps, batch=BATCH)
     return [replace(chart, schedule=schedule), replace(uv, schedule=schedule, error=uv_loss)]

@@ -28,13 +28,13 @@ PAPER_LEVELS = 5
 PAPER_STEPS = 40_000
 """What twenty minutes on two cores allow of the published 2000 epochs of 10^6 samples."""
 
-PRICES = {"sdf": 0.05, "chart": 0.02, "uv": 0.08}
+PRICES = {"sdf": 0.045, "chart": 0.02, "uv": 0.08}
 """How much a bit a weight less may raise the loss, of SDF and UV relative to what is left of it."""
 
 BATCH = 1024
 """With as long a memory as Muon's, more and smaller steps do better than large ones."""
 
-SHARES = {"sdf": 1.0, "chart": 0.45, "uv": 0.47}
+SHARES = {"sdf": 1.0, "chart": 0.5, "uv": 0.47}
 """Of the seconds: the SDF has a core to itself, charts and UVs share the other."""
 
 RATES = {"sdf": 1e-3, "chart": 3e-3, "uv": 1e-3}
@@ -148,6 +148,7 @@ def sine_tasks(
     budgets  bits for each network; without one the price decides
     """
     fine = errors["sdf"] > FINE
+    sets = problem.sets.with_scarce() if fine else problem.sets
     seconds = effort.seconds * (FINE_TIME if fine else 1.0)
     rates = RATES | ({"sdf": FINE_RATE} if fine else {})
     tasks = []
@@ -159,7 +160,7 @@ def sine_tasks(
             reviews=max(effort.reviews, steps // effort.every) if name == "sdf" else 0,
         )
         rounding = Rounding(CURVATURES[name], PRICES[name], budgets.get(name, 0.0))
-        tasks.append(replace(_task(problem.sets, name, spec, schedule), rounding=rounding))
+        tasks.append(replace(_task(sets, name, spec, schedule), rounding=rounding))
     return tasks
 
 

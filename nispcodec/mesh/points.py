@@ -33,7 +33,13 @@ def uniform_surface(
     random: np.random.Generator, pieces: Triangles, count: int
 ) -> tuple[FloatArray, NDArray[np.int64]]:
     """Points (count, 3) uniform by area on pieces (p, 3, 3), and the pieces they lie on."""
-    weight = area(pieces)
+    return points_on(random, pieces, area(pieces), count)
+
+
+def points_on(
+    random: np.random.Generator, pieces: Triangles, weight: FloatArray, count: int
+) -> tuple[FloatArray, NDArray[np.int64]]:
+    """As `uniform_surface`, with pieces drawn by their weight (p,) in place of their area."""
     piece = random.choice(len(pieces), size=count, p=weight / weight.sum())
     weights = random_barycentric(random, count)
     return np.einsum("nc,ncx->nx", weights, pieces[piece]), piece

@@ -17,10 +17,10 @@ from nispcodec.mesh.distance import Closest, DistanceField
 from nispcodec.mesh.merge import Cover, merge_charts
 from nispcodec.mesh.mirror import folded, mirrors, twins, unlike
 from nispcodec.mesh.openings import crossings, spread_over
-from nispcodec.mesh.points import barycentric, uniform_ball, uniform_surface
+from nispcodec.mesh.points import barycentric, points_on, uniform_ball, uniform_surface
 from nispcodec.mesh.sample_set import Floats, SampleSet
 from nispcodec.mesh.self_seams import split_self_seams
-from nispcodec.mesh.solid import build_solid
+from nispcodec.mesh.solid import area, build_solid
 
 BETA = 60.0
 """Importance exp(-BETA |SDF|) of a point (paper, eq. 5)."""
@@ -37,6 +37,9 @@ OPENING_SHARE = 5e-4
 
 FULL = 0.95
 """UVs that fill so much of the unit square in both directions stay as they are: no map to store."""
+
+TINY = 1e-12
+"""A share of the area that is none."""
 
 MEMBRANE_JITTER = 5e-3
 """How far off a membrane (normalised frame) a network may put it."""
@@ -61,7 +64,7 @@ class Sampler:
         self.charts = split_charts(mesh)
         if gap > 0:
             self.charts = split_self_seams(mesh, self.charts)
-        self.patches = len(self.charts)
+        self.patches = self.charts
         self.table = chart_table(mesh, self.charts)
         self.mirrors = mirrors(self.label, self.solid.pieces)
         self._crossings = np.zeros((0, 3))
@@ -77,11 +80,18 @@ class Sampler:
         that along the normal is Laplace-distributed, and edges are surrounded from all sides.
         With spread 1 / BETA this is the density of the paper's sampler, at one query a point.
         """
-        surface, _ = self._surface(count)
-        direction = self._random.normal(size=(count, 3))
-        direction /= np.linalg.norm(direction, axis=1, keepdims=True)
-        points = surface + direction * self._random.gamma(2.0, spread, size=(count, 1))
-        return self.label(points[np.abs(points).max(axis=1) <= CUBE], signed)
+        return self.label(self._beside(self._surface(count)[0], spread), signed)
+
+    def scarce(self, least: int, count: int, spread: float) -> SampleSet:
+        """What patches lack that have fewer than `least` of `count` points: so many beside each."""
+        sizes, patch = area(self.solid.pieces), self.patches.face_charts[self.solid.parents]
+        shares = np.bincount(patch, sizes) / sizes.sum()
+        lacking = np.where(shares > 0, np.maximum(least - count * shares, 0), 0)
+        if not lacking.any():
+            return self.label(np.zeros((0, 3)))
+        weight = sizes * (lacking / np.maximum(shares, TINY))[patch]
+        points, _ = points_on(self._random, self.solid.pieces, weight, round(lacking.sum()))
+        return self.label(self._beside(points, spread), signed=False)
 
     def cube(self, count: int) -> SampleSet:
         """Points uniform in the cube [-CUBE, CUBE]^3."""
@@ -152,6 +162,12 @@ class Sampler:
                 has_uv=np.append(self.table.has_uv, False),
                 openings=True,
             )
+
+    def _beside(self, surface: FloatArray, spread: float) -> FloatArray:
+        direction = self._random.normal(size=surface.shape)
+        direction /= np.linalg.norm(direction, axis=1, keepdims=True)
+        points = surface + direction * self._random.gamma(2.0, spread, size=(len(surface), 1))
+        return points[np.abs(points).max(axis=1) <= CUBE]
 
     def _surface(self, count: int) -> tuple[FloatArray, NDArray[np.int64]]:
         return uniform_surface(self._random, self.solid.pieces, count)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from nispcodec.mesh.sample_set import SampleSet
 from nispcodec.mesh.samples import BETA, Sampler
@@ -17,7 +17,10 @@ UNLIKE = 1 / 100
 """As TIGHT, for what is on one side only of a nearly symmetric asset."""
 
 SKIN = 3e-3
-"""Mean distance of the samples for charts and UVs: decisions far from the surface are wasted."""
+"""Mean distance of the samples for UVs: what is far from the surface is nobody's to ask."""
+
+CLOSE = 1.5e-3
+"""The same for charts: about as far as a decoded surface is off. Decisions beyond are wasted."""
 
 NEAR_COUNT = 80_000
 TIGHT_COUNT = 240_000
@@ -28,19 +31,28 @@ SKIN_COUNT = 250_000
 DETAIL_COUNT = 110_000
 CONFUSING_COUNT = 125_000
 MEMBRANE_COUNT = 12_000
+LEAST_COUNT = 150
 HELD_OUT_COUNT = 20_000
 PAPER_COUNT = 1_000_000
 
 
 @dataclass(frozen=True)
 class TrainingSets:
-    """Samples to fit the SDF (`distance`), charts and UVs (`textured`); held-out ones."""
+    """Samples to fit the SDF (`distance`), charts and UVs (`textured`); held-out ones.
+
+    `scarce`: more for UVs, of patches that are too small to have many.
+    """
 
     distance: SampleSet
     charts: SampleSet
     held_distance: SampleSet
     held_skin: SampleSet
     textured: SampleSet
+    scarce: SampleSet
+
+    def with_scarce(self) -> TrainingSets:
+        """UVs learn small patches too: for networks with room for them."""
+        return replace(self, textured=SampleSet.joined((self.textured, self.scarce)))
 
 
 def training_sets(sampler: Sampler) -> TrainingSets:
@@ -56,15 +68,19 @@ def training_sets(sampler: Sampler) -> TrainingSets:
         sampler.near(WIDE_COUNT, WIDE),
         *sampler.unlike(UNLIKE_COUNT, UNLIKE),
     )
-    skin = SampleSet.joined(
-        (sampler.near(SKIN_COUNT, SKIN, signed=False), sampler.membrane(MEMBRANE_COUNT))
+    skin, close = (
+        SampleSet.joined(
+            (sampler.near(SKIN_COUNT, spread, signed=False), sampler.membrane(MEMBRANE_COUNT))
+        )
+        for spread in (SKIN, CLOSE)
     )
     return TrainingSets(
         distance=SampleSet.joined(distance),
-        charts=SampleSet.joined((skin, sampler.confusing(skin, CONFUSING_COUNT))),
+        charts=SampleSet.joined((close, sampler.confusing(close, CONFUSING_COUNT))),
         held_distance=sampler.near(HELD_OUT_COUNT, SKIN),
         held_skin=sampler.surface(HELD_OUT_COUNT),
         textured=SampleSet.joined((skin, sampler.detailed(skin, DETAIL_COUNT))),
+        scarce=sampler.scarce(LEAST_COUNT, SKIN_COUNT, SKIN),
     )
 
 
@@ -76,5 +92,5 @@ def paper_training_sets(sampler: Sampler) -> TrainingSets:
     """
     samples = sampler.importance(PAPER_COUNT)
     distance = SampleSet.joined((samples, sampler.cube(CUBE_COUNT)))
-    surface = sampler.surface(HELD_OUT_COUNT)
-    return TrainingSets(distance, samples, sampler.near(HELD_OUT_COUNT, SKIN), surface, samples)
+    held_out = sampler.near(HELD_OUT_COUNT, SKIN), sampler.surface(HELD_OUT_COUNT)
+    return TrainingSets(distance, samples, *held_out, samples, samples[:0])
