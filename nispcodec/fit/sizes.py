@@ -47,7 +47,7 @@ MODELS = {
 AREA, AREA_POWER = 5.0, 0.4
 """With the same error left on a larger surface than this (normalised frame) more is to be held."""
 
-FINE, FINE_WIDTH = 1.8e-3, 66
+FINE, FINE_WIDTH = 1.8e-3, 64
 """An SDF whose probe is left with more is of fine detail: wider, and learns slower."""
 
 DEEP = 5

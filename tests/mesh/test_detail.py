@@ -61,13 +61,13 @@ def test_nothing_is_drawn_again_without_a_texture() -> None:
     assert len(sampler.detailed(sampler.surface(100), 50)) == 0
 
 
-def test_charts_and_uvs_learn_again_from_some_of_the_same_points(
+def test_charts_and_uvs_learn_some_points_again_charts_closer_to_the_surface(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     for name in [each for each in vars(training) if each.endswith("_COUNT")]:
         monkeypatch.setattr(training, name, 1000)
     sets = training.training_sets(Sampler(printed(), 0))
-    assert len(sets.textured) == len(sets.charts) == 2000
-    assert np.array_equal(sets.textured.points[:1000], sets.charts.points[:1000])
-    first = set(map(bytes, sets.charts.points[:1000]))
-    assert {*map(bytes, sets.textured.points), *map(bytes, sets.charts.points)} == first
+    for samples in (sets.textured, sets.charts):
+        assert len(samples) == 2000
+        assert set(map(bytes, samples.points)) == set(map(bytes, samples.points[:1000]))
+    assert np.abs(sets.charts.sdf).mean() < 0.7 * np.abs(sets.textured.sdf).mean()

@@ -91,6 +91,17 @@ def test_the_surface_is_sampled_by_area() -> None:
     assert np.bincount(chart) / 12_000 == pytest.approx(np.full(6, 1 / 6), abs=0.02)
 
 
+def test_patches_too_small_to_have_many_samples_get_those_that_they_lack() -> None:
+    large, small = cube((-1, -1, -1), 2.0), cube((2, 0, 0), 0.1)
+    sampler = Sampler(soup(np.concatenate([large, small])), seed=0)
+    lacking = 100 - 1000 / (1 + 20**2)
+    samples = sampler.scarce(100, 1000, 1e-3)
+    assert len(samples) == round(lacking)
+    assert set(samples.chart) == {1}
+    assert np.abs(samples.sdf).max() < 0.02
+    assert len(sampler.scarce(2, 1000, 1e-3)) == 0
+
+
 def test_barycentric_coordinates_rebuild_the_point() -> None:
     random = np.random.default_rng(0)
     triangles = random.normal(size=(40, 3, 3))
