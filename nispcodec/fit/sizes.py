@@ -41,13 +41,13 @@ class Model:
 MODELS = {
     "sdf": Model(33, 1.0e-3, 0.7, 22, 34),
     "chart": Model(30, 0.056, 0.6, 16, 44),
-    "uv": Model(19.5, 9.3e-4, 0.6, 12, 30),
+    "uv": Model(19.5, 9.3e-4, 0.6, 12, 34),
 }
 
 AREA, AREA_POWER = 5.0, 0.4
 """With the same error left on a larger surface than this (normalised frame) more is to be held."""
 
-FINE, FINE_WIDTH = 1.8e-3, 68
+FINE, FINE_WIDTH = 1.8e-3, 66
 """An SDF whose probe is left with more is of fine detail: wider, and learns slower."""
 
 DEEP = 5
