@@ -54,7 +54,7 @@ def classify(network: Network, points: Floats, among: int | None = None) -> Char
     forward = _Forward(network)
 
     def block(part: slice) -> None:
-        result[part] = forward(points[part], None)[:among].argmax(axis=0)
+        result[part] = _largest(forward(points[part], None)[:among])
 
     _in_blocks(block, network.spec, len(points))
     return result
@@ -102,12 +102,9 @@ class _Forward:
             _folded(weight, bias, np.float32(scale))
             for (weight, bias), scale in zip(network.layers, scales, strict=True)
         ]
-        self.by_chart: Floats | None = None
+        self.embedding: Floats | None = None
         if self.spec.embedding:
-            # The embedding meets the first layer only: one column of products for each chart.
-            first, width = self.layers[0], self.spec.embedding
-            self.by_chart = first[:, -1 - width : -1] @ network.tensors["embedding"].T
-            self.layers[0] = np.hstack([first[:, : -1 - width], first[:, -1:]])
+            self.embedding = np.ascontiguousarray(network.tensors["embedding"].T)
         self.frames: Floats | None = None
         if self.spec.conditioning == "frames":
             self.frames = _frames(network)
@@ -122,8 +119,6 @@ class _Forward:
             following = buffers[index % 2, : len(layer) + 1]
             following[-1] = 1
             np.matmul(layer, activations, out=following[:-1])
-            if index == 0 and self.by_chart is not None and charts is not None:
-                following[:-1] += self.by_chart.take(charts, axis=1)
             self._activate(following[:-1])
             activations = following
         outputs = self.layers[-1] @ activations
@@ -176,8 +171,10 @@ class _Forward:
             angles = self._frequencies[:, None] * coordinates[:, None, :]
             waves = np.stack([np.sin(angles), np.cos(angles)], axis=2)
             coordinates = waves.reshape(-1, len(points))
-        rows = np.empty((len(coordinates) + 1, len(points)), np.float32)
-        rows[:-1], rows[-1] = coordinates, 1
+        rows = np.empty((len(coordinates) + self.spec.embedding + 1, len(points)), np.float32)
+        rows[: len(coordinates)], rows[-1] = coordinates, 1
+        if self.embedding is not None and charts is not None:
+            rows[len(coordinates) : -1] = self.embedding.take(charts, axis=1)
         return rows
 
     def _coordinates(self, points: Floats) -> Floats:
@@ -231,6 +228,17 @@ class _Forward:
         if self.spec.output == "sigmoid":
             return outputs * (1 - outputs)
         return np.ones_like(outputs)
+
+
+def _largest(outputs: Floats) -> NDArray[np.unsignedinteger]:
+    """The first row that is largest in each column, (rows, n) -> (n,).
+
+    As argmax does, in a fifth to three fifths of its time: down columns argmax goes one by one.
+    """
+    count = len(outputs)
+    numbers = np.arange(count, 0, -1).astype(np.min_scalar_type(count))
+    largest = ~(outputs < outputs.max(axis=0))
+    return count - (largest.view(np.uint8) * numbers[:, None]).max(axis=0)
 
 
 def _folded(weight: Floats, bias: Floats, scale: np.float32) -> Floats:

@@ -30,11 +30,8 @@ makes 1e-4 to 2e-4 and must not be lost.
 ALIKE = 2e-3
 """Distances and texture coordinates that differ by less count as the same."""
 
-MOSTLY_SDF, MOSTLY_UV = 0.97, 0.9
-"""The shares of alike probes from which on an axis is worth a coordinate more.
-
-Of a surface less alike (gz_polaris, 0.965) ghosts appear on the wrong side; a UV network has none.
-"""
+MOSTLY_SDF, MOSTLY_UV = 0.95, 0.9
+"""The shares of alike probes from which on an axis is worth a coordinate more."""
 
 TWIN = 0.5
 """The share of a chart's points whose image lies on its twin; charts may be cut differently."""

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from threadpoolctl import threadpool_info
 
-from nispcodec.decode.evaluate import block_size, evaluate, gradient
+from nispcodec.decode.evaluate import block_size, classify, evaluate, gradient
 from nispcodec.errors import QueryError
 from nispcodec.network import Network, NetworkSpec
 from tests import tiny
@@ -95,6 +95,23 @@ def test_any_number_of_points(count: int) -> None:
     assert values.dtype == np.float32
     for row in {0, count // 2, count - 1} & set(range(count)):
         np.testing.assert_allclose(values[row], by_hand(network, points[row], 0), atol=1e-4)
+
+
+@pytest.mark.parametrize("outputs", [1, 2, 255, 256, 300])
+def test_classes_are_the_largest_outputs(outputs: int) -> None:
+    network = tiny.random_network(NetworkSpec((8,), outputs, w0=2.0), scale=0.5)
+    points = np.random.default_rng(5).uniform(-1, 1, (700, 3)).astype(np.float32)
+    values = evaluate(network, points)
+    assert np.array_equal(classify(network, points), values.argmax(axis=1))
+    few = (outputs + 1) // 2
+    assert np.array_equal(classify(network, points, few), values[:, :few].argmax(axis=1))
+
+
+@pytest.mark.parametrize("value", [0.0, np.nan])
+def test_of_outputs_that_are_alike_or_no_numbers_the_first_is_the_class(value: float) -> None:
+    network = tiny.random_network(NetworkSpec((8,), 300, w0=2.0), scale=0.0)
+    network.layers[-1][1][:] = value
+    assert not classify(network, np.zeros((5, 3), np.float32)).any()
 
 
 @pytest.mark.parametrize("activation", ["sine", "relu"])
