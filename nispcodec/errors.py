@@ -39,6 +39,10 @@ class FormatError(NispError):
         self.expected = expected
         self.found = found
 
+    def __reduce__(self) -> tuple[object, ...]:
+        # An exception is made anew from its text, when it comes from another process.
+        return type(self), (self.section, self.field, self.expected, self.found), self.__dict__
+
     def __str__(self) -> str:
         text = super().__str__()
         return f"{self.file}: {text}" if self.file else text

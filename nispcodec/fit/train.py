@@ -43,8 +43,8 @@ RETRIES = 4
 ROUNDINGS, SLIGHT = 3, 1.05
 """Rounding sees some of the samples, and now and then overlooks what costs most: how often it is
 tried at most, with others each time, and by how much the held-out error may rise before that."""
-LARGE = 8_000
-"""Weights from which on rounding takes long, and is tried once."""
+LARGE, NOTABLE = 8_000, 1.15
+"""Weights from which on rounding takes long, and is tried again only where it costs so much."""
 
 
 def train(
@@ -133,9 +133,9 @@ class _Run:
         steps, before = self.task.schedule.steps, self.best_error
         told = Progress(self.task.name, "quantise", steps, steps, self.loss, before, 0.0)
         tries: list[tuple[float, Tensor, Tensor | None]] = []
-        most = ROUNDINGS if len(self.best) < LARGE else 1
+        accepted = before * (SLIGHT if len(self.best) < LARGE else NOTABLE)
         priced = self._priced(rounding)
-        while len(tries) < most and all(error > SLIGHT * before for error, *_ in tries):
+        while len(tries) < ROUNDINGS and all(error > accepted for error, *_ in tries):
             self.listen(told)
             self._set(self.best)
             round_weights(self.module, self.samples, priced, self.generator)

@@ -9,8 +9,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from nispcodec.asset import FloatArray
-from nispcodec.mesh.solid import SHELL, Solid, Triangles
+from nispcodec.mesh.solid import SHELL, Solid, Triangles, normals
 from nispcodec.mesh.z_order import z_order
+
+LIFT = 1e-6
+"""How far in front of a sheet (normalised frame) its points are looked for: of two faces back to
+back the one on the same side is the closest."""
 
 
 @dataclass(frozen=True)
@@ -31,8 +35,9 @@ class DistanceField:
 
     def __init__(self, solid: Solid) -> None:
         self.solid = solid
-        self._walls = _Tree(solid, ~solid.sheet)
-        self._sheets = _Tree(solid, solid.sheet)
+        self._walls = _Tree(solid.pieces, solid.wall)
+        lifted = solid.pieces + LIFT * normals(solid.pieces)[:, None]
+        self._sheets = _Tree(lifted, solid.sheet)
 
     def closest(self, points: FloatArray, signed: bool = True) -> Closest:
         """Signed distance (negative inside) and closest surface point of (n, 3) points.
@@ -59,9 +64,9 @@ class DistanceField:
 class _Tree:
     """Unsigned distance to some of the pieces; infinitely far when there are none."""
 
-    def __init__(self, solid: Solid, chosen: NDArray[np.bool_]) -> None:
+    def __init__(self, pieces: Triangles, chosen: NDArray[np.bool_]) -> None:
         self.index = np.flatnonzero(chosen)
-        triangles: Triangles = solid.pieces[self.index]
+        triangles = pieces[self.index]
         self.vertices = np.ascontiguousarray(triangles.reshape(-1, 3))
         self.faces = np.arange(3 * len(triangles), dtype=np.int64).reshape(-1, 3)
         self.tree = igl.AABB()

@@ -20,7 +20,7 @@ from nispcodec.mesh.openings import crossings, spread_over
 from nispcodec.mesh.points import barycentric, points_on, uniform_ball, uniform_surface
 from nispcodec.mesh.sample_set import Floats, SampleSet
 from nispcodec.mesh.self_seams import split_self_seams
-from nispcodec.mesh.solid import area, build_solid
+from nispcodec.mesh.solid import SHELL, area, build_solid, normals
 
 BETA = 60.0
 """Importance exp(-BETA |SDF|) of a point (paper, eq. 5)."""
@@ -90,8 +90,8 @@ class Sampler:
         if not lacking.any():
             return self.label(np.zeros((0, 3)))
         weight = sizes * (lacking / np.maximum(shares, TINY))[patch]
-        points, _ = points_on(self._random, self.solid.pieces, weight, round(lacking.sum()))
-        return self.label(self._beside(points, spread), signed=False)
+        found = points_on(self._random, self.solid.pieces, weight, round(lacking.sum()))
+        return self.label(self._beside(self._raised(*found), spread), signed=False)
 
     def cube(self, count: int) -> SampleSet:
         """Points uniform in the cube [-CUBE, CUBE]^3."""
@@ -106,7 +106,7 @@ class Sampler:
         return self.label(candidates[chosen])
 
     def surface(self, count: int) -> SampleSet:
-        """Points uniform by area on the outer faces and sheets."""
+        """Points uniform by area on the outer faces and on both sides of sheets."""
         return self.label(self._surface(count)[0], signed=False)
 
     def unlike(self, count: int, spread: float) -> list[SampleSet]:
@@ -170,14 +170,27 @@ class Sampler:
         return points[np.abs(points).max(axis=1) <= CUBE]
 
     def _surface(self, count: int) -> tuple[FloatArray, NDArray[np.int64]]:
-        return uniform_surface(self._random, self.solid.pieces, count)
+        points, piece = uniform_surface(self._random, self.solid.pieces, count)
+        return self._raised(points, piece), piece
+
+    def _raised(self, points: FloatArray, piece: NDArray[np.int64]) -> FloatArray:
+        """Points (n, 3) on pieces (n,), those on sheets moved to where the thickness ends.
+
+        In front of one of two faces back to back; of a single one on either side.
+        """
+        sheet = np.flatnonzero(self.solid.sheet[piece])
+        on = piece[sheet]
+        side = np.where(self.solid.wall[on] | (self._random.random(len(on)) < 0.5), 1.0, -1.0)
+        points[sheet] += (SHELL * side)[:, None] * normals(self.solid.pieces[on])
+        return points
 
     def _merged(self, gap: float) -> Charts:
         """Merge charts, told by random points and one point of each piece of small charts."""
         points, piece = self._surface(MERGE_POINTS)
         chart = self.charts.face_charts[self.solid.parents]
         rare = np.bincount(chart[piece], minlength=len(self.charts))[chart] < MERGE_RARE
-        points = np.concatenate([points, self.solid.pieces[rare].mean(axis=1)])
+        centres = self._raised(self.solid.pieces[rare].mean(axis=1), np.flatnonzero(rare))
+        points = np.concatenate([points, centres])
         surface = self.label(points, signed=False)
         seen, uvs = folded(points, self.mirrors.uv), surface.uv.astype(np.float64)
         cover = Cover(points, surface.chart, seen, uvs)

@@ -2,7 +2,8 @@
 
 Real assets are many bodies pushed into each other, with holes where nobody looks. The winding
 number says what is inside; the part of the mesh that lies inside other bodies is hidden and cannot
-be the zero set of any SDF; open sheets (cards, cloth, leaves) have no inside and get a thickness.
+be the zero set of any SDF; open sheets (cards, cloth, leaves) have no inside and get a thickness,
+as do walls too thin for one (cards of two faces back to back).
 """
 
 from __future__ import annotations
@@ -24,6 +25,9 @@ OFFSET = 2e-3
 SHELL = 4e-3
 """Half the thickness (normalised frame) given to sheets."""
 
+THIN = 1e-3
+"""Walls thinner than this (normalised frame) are sheets: nothing inside them would be learned."""
+
 COARSE_EDGE = 0.1
 FINE_EDGE = 0.03
 DOUBT = 0.05
@@ -36,6 +40,14 @@ OPENNESS = 0.25
 UNDECIDED = 0.2
 GAP = 0.02
 
+CARD = 0.7
+"""A body whose openings have at least this share of its own area is a card."""
+
+CLOSING = 0.25
+"""A card that closes something has a winding number within this of a whole one, in the mean."""
+
+TINY = 1e-30
+
 Triangles = NDArray[np.float64]
 
 
@@ -46,6 +58,7 @@ class Solid:
     pieces  (p, 3, 3) float64: the outer faces and sheets, large ones subdivided
     parents (p,) int: the mesh face that each piece is part of
     sheet   (p,) bool: pieces that get a thickness
+    wall    (p,) bool: pieces with an inside; a sheet that is one too has two faces back to back
     winding of the closed or nearly closed bodies: where it is beyond 1/2 is inside
     hidden_share, sheet_share: of the mesh's area
     """
@@ -53,6 +66,7 @@ class Solid:
     pieces: Triangles
     parents: NDArray[np.int64]
     sheet: NDArray[np.bool_]
+    wall: NDArray[np.bool_]
     winding: Winding
     hidden_share: float
     sheet_share: float
@@ -60,24 +74,25 @@ class Solid:
 
 def build_solid(corners: Triangles) -> Solid:
     """Sort the faces (m, 3, 3), normalised frame. Raises MeshError when none can be seen."""
-    open_faces = _open_bodies(corners)
-    bodies = corners[~open_faces]
+    free = _free_bodies(corners)
+    bodies = corners[~free]
     winding = Winding(bodies)
-    pieces, parents, kind = _classify(winding, bodies, np.flatnonzero(~open_faces))
+    pieces, parents, kind = _classify(winding, bodies, np.flatnonzero(~free))
     hidden = kind == _HIDDEN
     total = area(corners).sum()
-    sheets = np.flatnonzero(open_faces)
-    all_pieces = np.concatenate([pieces[~hidden], corners[sheets]])
+    all_pieces = np.concatenate([pieces[~hidden], corners[free]])
     if not len(all_pieces):
         raise MeshError(f"expected faces to be seen from outside, found {len(corners)} hidden ones")
-    is_sheet = np.concatenate([kind[~hidden] == _SHEET, np.ones(len(sheets), dtype=bool)])
+    kinds = np.concatenate([kind[~hidden], np.full(free.sum(), _SHEET)])
+    sheet = kinds != _OUTER
     return Solid(
         pieces=all_pieces,
-        parents=np.concatenate([parents[~hidden], sheets]),
-        sheet=is_sheet,
+        parents=np.concatenate([parents[~hidden], np.flatnonzero(free)]),
+        sheet=sheet,
+        wall=kinds != _SHEET,
         winding=winding,
         hidden_share=float(area(pieces[hidden]).sum() / total),
-        sheet_share=float(area(all_pieces[is_sheet]).sum() / total),
+        sheet_share=float(area(all_pieces[sheet]).sum() / total),
     )
 
 
@@ -114,7 +129,7 @@ class Winding:
         return number
 
 
-_OUTER, _HIDDEN, _SHEET, _MIXED = range(4)
+_OUTER, _HIDDEN, _SHEET, _THIN, _MIXED = range(5)
 
 
 def _classify(
@@ -132,7 +147,17 @@ def _classify(
         done.append((todo[keep], todo_parents[keep], kind[keep]))
         todo, todo_parents = _subdivide(todo[~keep]), np.repeat(todo_parents[~keep], 4)
     pieces, owners, kinds = zip(*done, strict=True) if done else ((bodies,), (parents,), (parents,))
-    return np.concatenate(pieces), np.concatenate(owners), np.concatenate(kinds)
+    everything, kind = np.concatenate(pieces), np.concatenate(kinds)
+    kind[_thin(winding, everything) & (kind == _OUTER)] = _THIN
+    return everything, np.concatenate(owners), kind
+
+
+def _thin(winding: Winding, pieces: Triangles) -> NDArray[np.bool_]:
+    """Which pieces (p,) have the outside in front and, a thin wall away, behind them as well."""
+    centre, step = pieces.mean(axis=1), THIN * normals(pieces)
+    thin: NDArray[np.bool_] = np.abs(winding.at(centre - step)) <= 0.5
+    thin[thin] = np.abs(winding.at((centre + step)[thin])) <= 0.5
+    return thin
 
 
 def _kind(winding: Winding, pieces: Triangles, single: NDArray[np.bool_]) -> NDArray[np.int64]:
@@ -159,22 +184,50 @@ def _point_kind(winding: Winding, pieces: Triangles, weights: FloatArray) -> NDA
     return np.select([doubtful, inside], [_SHEET, _HIDDEN], _OUTER)
 
 
-def _open_bodies(corners: Triangles) -> NDArray[np.bool_]:
-    """Faces of bodies with large openings that no other body plugs.
-
-    Closing such an opening, as the winding number does where it passes 1/2, would draw a membrane
-    that nobody modelled. Openings within `GAP` of the mesh (flat cards, panels) need no such care.
-    """
+def _free_bodies(corners: Triangles) -> NDArray[np.bool_]:
+    """Faces (m,) of bodies that enclose nothing: sheets, whatever the winding number says."""
     vertices = row_ids(corners.reshape(-1, 3)).reshape(-1, 3)
     body = connected_faces(vertices)
+    size = np.maximum(np.bincount(body, weights=area(corners)), TINY)
     opening, centre, owner = _openings(corners, vertices, body)
-    undecided = np.abs(np.abs(Winding(corners).at(centre)) - 0.5) < UNDECIDED
-    exposed = undecided & (_gap(corners, centre) > GAP)
-    count = int(body.max()) + 1
-    open_area = np.bincount(owner[exposed], weights=opening[exposed], minlength=count)
-    openness = open_area / np.maximum(np.bincount(body, weights=area(corners)), 1e-30)
-    mask: NDArray[np.bool_] = (openness > OPENNESS)[body]
+    exposed = _exposed(corners, centre)
+    open_area = np.bincount(owner[exposed], weights=opening[exposed], minlength=len(size))
+    is_open = open_area / size > OPENNESS
+    is_card = np.bincount(owner, weights=opening, minlength=len(size)) / size > CARD
+    mask: NDArray[np.bool_] = _with_cards(corners, body, is_card, is_open)[body]
     return mask
+
+
+def _exposed(corners: Triangles, centre: FloatArray) -> NDArray[np.bool_]:
+    """Which openings, by their centres (n, 3), are large and not plugged by another body.
+
+    Closing one, as the winding number does where it passes 1/2, would draw a membrane that nobody
+    modelled. Openings within `GAP` of the mesh (flat cards, panels) need no such care.
+    """
+    undecided = np.abs(np.abs(Winding(corners).at(centre)) - 0.5) < UNDECIDED
+    exposed: NDArray[np.bool_] = undecided & (_gap(corners, centre) > GAP)
+    return exposed
+
+
+def _with_cards(
+    corners: Triangles, body: NDArray[np.integer], card: NDArray[np.bool_], free: NDArray[np.bool_]
+) -> NDArray[np.bool_]:
+    """The `free` bodies (b,) and the cards among the others that close nothing.
+
+    The winding number beside a card is a half and whatever its neighbours add: where there are many
+    (leaves), any number. Beside one that closes a body it is a whole one. Cards let go show others.
+    """
+    while (card & ~free).any():
+        faces = np.flatnonzero((card & ~free)[body])
+        sizes, shown = area(corners[faces]), corners[faces]
+        front = Winding(corners[~free[body]]).at(shown.mean(axis=1) + OFFSET * normals(shown))
+        total = np.bincount(body[faces], sizes, len(free))
+        mean = np.bincount(body[faces], front * sizes, len(free)) / np.maximum(total, TINY)
+        loose = np.abs(mean + 0.5) < 0.5 - CLOSING
+        if not loose.any():
+            break
+        free = free | loose
+    return free
 
 
 def _gap(corners: Triangles, points: FloatArray) -> FloatArray:

@@ -22,6 +22,9 @@ SKIN = 3e-3
 CLOSE = 1.5e-3
 """The same for charts: about as far as a decoded surface is off. Decisions beyond are wasted."""
 
+UNLIKE_TIMES = 8
+"""How often each of these is learned from: with once, a large part is there on the other side too."""
+
 NEAR_COUNT = 80_000
 TIGHT_COUNT = 240_000
 CUBE_COUNT = 80_000
@@ -66,7 +69,7 @@ def training_sets(sampler: Sampler) -> TrainingSets:
         sampler.near(TIGHT_COUNT, TIGHT),
         sampler.cube(CUBE_COUNT),
         sampler.near(WIDE_COUNT, WIDE),
-        *sampler.unlike(UNLIKE_COUNT, UNLIKE),
+        *sampler.unlike(UNLIKE_COUNT, UNLIKE) * UNLIKE_TIMES,
     )
     skin, close = (
         SampleSet.joined(

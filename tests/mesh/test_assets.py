@@ -53,7 +53,7 @@ def test_real_asset(name: str):
         ("exploding_barrel", Mirrors(sdf=0b100101, uv=0)),
         ("chess_king", Mirrors(sdf=0b000101, uv=0)),
         ("boombox", Mirrors(sdf=0b001001, uv=0)),
-        ("gz_polaris", Mirrors(sdf=0, uv=0b001001)),
+        ("gz_polaris", Mirrors(sdf=0b001001, uv=0b001001)),
         ("tea_set_01", Mirrors(sdf=0, uv=0)),
     ],
 )

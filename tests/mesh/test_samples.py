@@ -8,6 +8,7 @@ import pytest
 from nispcodec.mesh import training
 from nispcodec.mesh.points import barycentric
 from nispcodec.mesh.samples import BETA, CUBE, Sampler, normalising_frame
+from nispcodec.mesh.solid import SHELL
 from tests.mesh.shapes import box_asset, cube, hemisphere, soup
 
 
@@ -46,6 +47,18 @@ def test_labels_of_the_box() -> None:
     assert labels.chart.tolist() == [1, 0]
     assert uv[0] == pytest.approx([(0.5 * 0.9 + 1) / 3, 0.75 * 0.9 / 2], abs=1e-6)
     assert uv[1] == pytest.approx([0.625 * 0.9 / 3, 0.5 * 0.9 / 2], abs=1e-6)
+
+
+def test_samples_of_sheets_lie_where_their_thickness_ends_and_tell_the_sides() -> None:
+    front = np.array([[[-1, -1, 0], [1, -1, 0], [1, 1, 0]], [[-1, -1, 0], [1, 1, 0], [-1, 1, 0]]])
+    one = Sampler(soup(front.astype(float)), seed=0).surface(500)
+    assert np.abs(one.points[:, 2]) == pytest.approx(SHELL)
+    assert (one.points[:, 2] > 0).mean() == pytest.approx(0.5, abs=0.1)
+    uvs = np.concatenate([np.full((2, 3, 2), 0.2), np.full((2, 3, 2), 0.7)])
+    both = Sampler(soup(np.concatenate([front, front[:, ::-1]]).astype(float), uvs), seed=0)
+    samples = both.near(500, 0.05)
+    uv = samples.uv * both.table.uv_scale + both.table.uv_offset
+    assert uv[:, 0] == pytest.approx(np.where(samples.points[:, 2] > 0, 0.2, 0.7), abs=1e-6)
 
 
 def test_every_uv_target_is_in_the_unit_square() -> None:
