@@ -23,7 +23,7 @@ CLOSE = 1.5e-3
 """The same for charts: about as far as a decoded surface is off. Decisions beyond are wasted."""
 
 UNLIKE_TIMES = 8
-"""How often each of these is learned from: with once, a large part is there on the other side too."""
+"""How often each of these is learned from: if once, a large part shows on the other side too."""
 
 NEAR_COUNT = 80_000
 TIGHT_COUNT = 240_000

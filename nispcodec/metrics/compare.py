@@ -67,7 +67,7 @@ class Reference:
             report["parameterisation"] = _parameterisation(original, second)
         report["color"] = {"psnr": color_psnr(original, second, directions.values())}
         if model is not None:
-            world = self.frame.to_world(self.seen.positions)
+            world = self.frame.to_world(original.outlook(self.seen))
             report["charts"] = _charts(original, self.seen, world, model)
         return report
 
@@ -93,8 +93,9 @@ def compare(
 def _match(
     original: Surface, decoded: Surface, on_original: SurfacePoints, on_decoded: SurfacePoints
 ) -> Directions:
+    seen = decoded.closest(original.outlook(on_original))
     return {
-        "original_to_decoded": Matches(on_original, decoded.closest(on_original.positions)),
+        "original_to_decoded": Matches(on_original, seen),
         "decoded_to_original": Matches(original.closest(on_decoded.positions), on_decoded),
     }
 

@@ -11,12 +11,16 @@ from numpy.typing import NDArray
 from nispcodec.asset import TexturedMesh
 from nispcodec.document import Frame
 from nispcodec.errors import MeshError
+from nispcodec.metrics.twins import twins
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
 
 FLAT = 1e-7
 """A face whose height is less than this part of its longest edge is a line, to double precision."""
+
+BEFORE = 2e-3
+"""How far in front of one of two faces back to back one looks from (normalised frame)."""
 
 
 def frame_of(mesh: TexturedMesh) -> Frame:
@@ -88,6 +92,11 @@ class Surface:
         return self._crosses / np.maximum(2 * self.areas, np.finfo(np.float64).tiny)[:, None]
 
     @cached_property
+    def twins(self) -> Indices:
+        """(m,): the face back to back with each face, -1 where there is none."""
+        return twins(self.corners, self.normals)
+
+    @cached_property
     def diagonal(self) -> float:
         """Length of the bounding box's diagonal."""
         return float(np.linalg.norm(np.ptp(self.corners.reshape(-1, 3), axis=0)))
@@ -102,16 +111,42 @@ class Surface:
         weights = np.stack([1 - root, root * (1 - second), root * second], axis=1)
         return SurfacePoints(faces, weights, self.interpolate(faces, weights))
 
+    def outlook(self, points: SurfacePoints) -> Array:
+        """(n, 3): from where to look at another surface for what corresponds to some points.
+
+        From the points themselves; on two faces back to back from `BEFORE` in front of their own,
+        or one would see either side of what has a thickness there.
+        """
+        doubled = np.flatnonzero(self.twins[points.faces] >= 0)
+        positions = points.positions.copy()
+        positions[doubled] += BEFORE * self.normals[points.faces[doubled]]
+        return positions
+
     def closest(self, points: Array) -> SurfacePoints:
-        """For each of (n, 3) points the closest point of the surface."""
+        """For each of (n, 3) points the closest point of the surface.
+
+        Of two faces back to back that is on the one which looks towards the point.
+        """
         import igl
 
         faces = np.asarray(self.mesh.faces[self._solid], dtype=np.int64)
         _, found, positions = igl.point_mesh_squared_distance(points, self.positions, faces)
-        a, b, c = np.moveaxis(self.corners[self._solid[found]], 1, 0)
-        weights = np.clip(igl.barycentric_coordinates(positions, a, b, c), 0, 1)
-        weights /= weights.sum(axis=1, keepdims=True)
-        return SurfacePoints(self._solid[found], weights, positions)
+        closest = self.facing(self._solid[found], positions - points)
+        return SurfacePoints(closest, self.weights(closest, positions), positions)
+
+    def weights(self, faces: Indices, positions: Array) -> Array:
+        """(n, 3) barycentric weights of positions (n, 3) on faces (n,)."""
+        import igl
+
+        a, b, c = np.moveaxis(self.corners[faces], 1, 0)
+        weights: Array = np.clip(igl.barycentric_coordinates(positions, a, b, c), 0, 1)
+        return weights / weights.sum(axis=1, keepdims=True)
+
+    def facing(self, faces: Indices, towards: Array) -> Indices:
+        """Faces (n,), or of two back to back the one met from its front in directions (n, 3)."""
+        twin = self.twins[faces]
+        behind = (self.normals[faces] * towards).sum(axis=1) > 0
+        return np.where(behind & (twin >= 0), twin, faces)
 
     def interpolate(self, faces: Indices, weights: Array) -> Array:
         """(n, 3) positions at barycentric weights (n, 3) of faces (n,)."""

@@ -6,7 +6,7 @@ import numpy as np
 
 from nispcodec.asset import Material, Texture, TexturedMesh
 from nispcodec.document import Frame
-from nispcodec.metrics.surface import Indices, Surface, SurfacePoints, frame_of
+from nispcodec.metrics.surface import Array, Indices, Surface, SurfacePoints, frame_of
 from nispcodec.metrics.uv import uv_at
 from nispcodec.render.fragments import Cast, Floats, Fragments
 from nispcodec.render.normals import corner_normals
@@ -44,10 +44,18 @@ class MeshScene:
         rays = np.flatnonzero(found["primID"] >= 0)
         u, v = found["u"][rays].astype(np.float64), found["v"][rays].astype(np.float64)
         faces, weights = found["primID"][rays].astype(np.int64), np.stack([1 - u - v, u, v], axis=1)
-        points = SurfacePoints(faces, weights, self.surface.interpolate(faces, weights))
+        points = self._seen(faces, weights, directions[rays].astype(np.float64))
         fragments = self._fragments(rays, found["tfar"][rays], points, directions[rays])
         count = len(origins)
         return Cast(fragments, np.zeros(count, np.int32), np.zeros(count, np.bool_))
+
+    def _seen(self, faces: Indices, weights: Array, towards: Array) -> SurfacePoints:
+        """The points that rays hit, of two faces back to back on the one that faces the ray."""
+        seen = self.surface.facing(faces, towards)
+        positions = self.surface.interpolate(faces, weights)
+        turned = np.flatnonzero(seen != faces)
+        weights[turned] = self.surface.weights(seen[turned], positions[turned])
+        return SurfacePoints(seen, weights, positions)
 
     def _fragments(
         self, rays: Indices, distances: Floats, points: SurfacePoints, towards: Floats

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import multiprocessing
 import os
 import select
@@ -264,12 +265,29 @@ def test_reviews_bring_back_a_part_that_few_samples_show() -> None:
     assert share_found(reviews=4) > 0.5 > share_found(reviews=0)
 
 
-@pytest.mark.parametrize(("spoils", "kept"), [([2.0, 0.5, 1.0], 0.5), ([0.0], 0.0)])
+@pytest.mark.parametrize(
+    ("spoils", "kept", "slight", "notable"),
+    [
+        ([2.0, 0.5, 1.0], 0.5, 1.05, None),
+        ([0.0], 0.0, 1.05, None),
+        ([2.0], 2.0, math.inf, None),
+        ([2.0, 0.5, 1.0], 0.5, math.inf, 1.15),
+        ([2.0], 2.0, 1.05, math.inf),
+    ],
+)
 def test_rounding_that_costs_much_is_tried_again_and_the_best_stays(
-    spoils: list[float], kept: float, monkeypatch: pytest.MonkeyPatch
+    spoils: list[float],
+    kept: float,
+    slight: float,
+    notable: float | None,
+    monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """As many times as there are `spoils`, each from the best weights."""
+    """As many times as there are `spoils`, each from the best weights; `notable`: as if large."""
     untried = list(spoils)
+    monkeypatch.setattr("nispcodec.fit.train.SLIGHT", slight)
+    if notable is not None:
+        monkeypatch.setattr("nispcodec.fit.train.LARGE", 0)
+        monkeypatch.setattr("nispcodec.fit.train.NOTABLE", notable)
 
     def spoiled(module: Module, *_: object) -> None:
         with torch.no_grad():

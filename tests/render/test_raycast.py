@@ -47,6 +47,17 @@ def test_the_nearer_surface_hides_the_farther() -> None:
     assert FRONT.eye[2] - found.distances[0] == pytest.approx(0.2, abs=1e-5)
 
 
+@pytest.mark.parametrize(("camera", "seen"), [(FRONT, 0), (Camera(180, 0), 1)])
+def test_of_two_faces_back_to_back_the_one_in_front_is_seen(camera: Camera, seen: int) -> None:
+    front = plane()
+    both = joined(front, dataclasses.replace(front, faces=front.faces[:, ::-1].copy()))
+    materials = np.repeat(np.array([0, 1], np.int32), len(front.faces))
+    colored = tuple(Material(base_color=color) for color in ((1.0, 0.0, 0, 1), (0.0, 1.0, 0, 1)))
+    mesh = dataclasses.replace(both, materials=colored, face_materials=materials)
+    (picture,) = render_views(mesh, [camera], 64, UNIT)
+    assert (picture[20:44, 20:44, :3].argmax(axis=2) == seen).all()
+
+
 def test_cut_outs_show_what_is_behind() -> None:
     half = [[(255, 0, 0, 255), (255, 0, 0, 100)]]
     mesh = with_maps(joined(plane(0.2), plane(-0.2)), base_color=half)

@@ -1,0 +1,35 @@
+"""Faces that lie back to back: the two sides of a leaf or a flag."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+# Odd, so that multiplying loses no bit.
+FACTORS = np.array([0x9E3779B97F4A7C15, 0xC2B2AE3D27D4EB4F, 0x165667B19E3779F9], np.uint64)
+DOWN = np.uint64(32)
+
+
+def twins(corners: NDArray[np.float64], normals: NDArray[np.float64]) -> NDArray[np.int64]:
+    """(m,): for each face another one with the same corners that looks the other way; -1 for none.
+
+    corners (m, 3, 3), normals (m, 3).
+    """
+    codes = np.sort(_codes(corners), axis=1)
+    order = np.lexsort(codes.T)
+    first, second = order[:-1], order[1:]
+    same = (codes[first] == codes[second]).all(axis=1)
+    first, second = first[same], second[same]
+    opposite = (normals[first] * normals[second]).sum(axis=1) < 0
+    found = np.full(len(corners), -1, np.int64)
+    found[first[opposite]], found[second[opposite]] = second[opposite], first[opposite]
+    return found
+
+
+def _codes(positions: NDArray[np.float64]) -> NDArray[np.uint64]:
+    """(..., 3) -> (...): a number for each position, another one for any other but by accident."""
+    # Adding zero makes -0 and 0 the same bits; a sign alone must not stay in the uppermost.
+    bits = (positions + 0.0).view(np.uint64)
+    mixed = (bits ^ bits >> DOWN) * FACTORS
+    codes: NDArray[np.uint64] = ((mixed ^ mixed >> DOWN) * FACTORS[::-1]).sum(axis=-1)
+    return codes
