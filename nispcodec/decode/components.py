@@ -3,8 +3,8 @@
 A fitted SDF may cross zero where there is no surface, far from its training samples. Such a
 crossing gives itself away: it lies outside the normalised frame's unit ball, or the field around it
 is no distance field and it is steep, or tiny and far from everything else. Tiny pieces beside
-others are what is left of straps and wires. A small hollow that nothing leads into is dropped as
-well: nobody can see into it.
+others are what is left of straps and wires, but for crumbs of a single cell. A small hollow that
+nothing leads into is dropped as well: nobody can see into it.
 """
 
 from __future__ import annotations
@@ -27,6 +27,8 @@ from nispcodec.network import Network
 # dropped.
 STEEP, SMALL_SHARE = 1.7, 0.05
 FLAT, SPECK_AREA, LONELY = 0.6, 3e-3, 0.02
+# Vertices of a flat piece about one cell, of which the grid tells no shape.
+CRUMB = 8
 # Vertices of which one is near any place on the surface, a quarter of `LONELY` or less away.
 MANY = 200_000
 HOLLOW_SHARE = 0.03
@@ -83,7 +85,8 @@ def spurious(network: Network, surface: Surface) -> tuple[NDArray[np.bool_], Int
     """Which components are noise (c,) bool, and the component of each vertex (n,).
 
     A component is noise when all of it lies outside the unit ball, when it is small and the field
-    is steep on it, when it is a lonely speck and the field is flat, or when it is a small hollow.
+    is steep on it, when it is a crumb or a lonely speck and the field is flat, or when it is a
+    small hollow.
     """
     count, labels = components(surface)
     if count < 2:
@@ -92,7 +95,8 @@ def spurious(network: Network, surface: Surface) -> tuple[NDArray[np.bool_], Int
     np.minimum.at(nearest, labels, np.linalg.norm(surface.positions, axis=1))
     vertices = np.bincount(labels, minlength=count)
     slope = _mean_slopes(network, surface, labels, vertices)
-    flat = _lonely(surface, labels, (slope < FLAT) & (vertices * surface.cell**2 < SPECK_AREA))
+    specks = (slope < FLAT) & (vertices * surface.cell**2 < SPECK_AREA)
+    flat = _lonely(surface, labels, specks) | (specks & (vertices <= CRUMB))
     hollow = _volumes(surface, labels, vertices < HOLLOW_SHARE * len(labels)) < 0
     return (nearest > OUTSIDE) | (slope > STEEP) | flat | hollow, labels
 

@@ -152,13 +152,21 @@ def beside(gap: float, slope: float) -> Network:
 
 
 @pytest.mark.parametrize(
-    ("gap", "slope", "dropped"), [(0.01, 0.3, 0), (0.1, 0.3, 1), (0.1, 0.9, 0)]
+    ("gap", "slope", "cells", "dropped"),
+    [
+        (0.01, 0.3, 256, 0),
+        (0.1, 0.3, 256, 1),
+        (0.1, 0.9, 256, 0),
+        (0.01, 0.3, 128, 1),
+        (0.01, 0.3, 160, 0),
+        (0.01, 0.9, 128, 0),
+    ],
 )
-def test_flat_specks_are_noise_where_nothing_else_is_near(
-    gap: float, slope: float, dropped: int
+def test_flat_specks_are_noise_where_nothing_else_is_near_or_of_a_single_cell(
+    gap: float, slope: float, cells: int, dropped: int
 ) -> None:
     network = beside(gap, slope)
-    surface = extract(network, 256)
+    surface = extract(network, cells)
     assert components(surface)[0] == 2
     assert without_noise(network, surface)[1].dropped == dropped
 
