@@ -1,11 +1,11 @@
 """`.nisp` against simplify + Draco at equal error, from what other commands have measured.
 
-    python -m benchmarks --assets ../shared/assets --codec simplified_draco
     python -m benchmarks.main_job --assets ../shared/assets
     python -m benchmarks.duel
 
-The rival's bytes are the fewest of all its settings whose mean distance is no larger than ours, and
-those whose mean UV error is no larger either.
+The rival's points are those that the last `make bench` left in `results/bench.csv`. Its bytes are
+the fewest of all its settings whose mean distance is no larger than ours, and of those whose mean
+UV error is no larger either.
 """
 
 from __future__ import annotations
@@ -20,12 +20,12 @@ import numpy as np
 
 from benchmarks.machine import commit
 from benchmarks.main_job import RESULTS as MAIN_JOB
-from benchmarks.rows import Row, row
-from benchmarks.store import Store
+from benchmarks.rows import Row, from_csv, row
 from benchmarks.summary import OURS, RIVAL, duels
 from nispcodec.output import write_atomic
 
 PRECISE = ("spot", "food_apple_01", "chess_king", "tea_set_01")
+POINTS = Path("benchmarks/results/bench.csv")
 DEMANDS = ("distance", "distance and uv")
 RESULTS = Path("benchmarks/results/duel.json")
 
@@ -66,12 +66,13 @@ def mean_share(table: Mapping[str, Duel], assets: Sequence[str], demand: str) ->
 
 
 @click.command()
-@click.option("--points", type=click.Path(path_type=Path), default="build/bench/points")
+@click.option("--points", type=click.Path(path_type=Path), default=POINTS, show_default=True)
 @click.option("-o", "--output", type=click.Path(path_type=Path), default=RESULTS, show_default=True)
 def main(points: Path, output: Path) -> None:
     """Print the table and write it as JSON."""
     records = json.loads(Path(MAIN_JOB).read_text(encoding="utf-8"))["assets"]
-    rivals = [row(record) for record in Store(points).records() if record["codec"] == RIVAL]
+    everyone = from_csv(points.read_text(encoding="utf-8"))
+    rivals = [each for each in everyone if each["codec"] == RIVAL]
     rows = [*rivals, *our_rows(records)]
     table = {name: duel(rows, name) for name in records}
     means = {

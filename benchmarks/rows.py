@@ -80,6 +80,24 @@ def as_csv(rows: Sequence[Row]) -> str:
     return text.getvalue()
 
 
+def from_csv(text: str) -> list[Row]:
+    """The rows that `as_csv` wrote."""
+    return [
+        {name: _read(name, value) for name, value in each.items()}
+        for each in csv.DictReader(io.StringIO(text))
+    ]
+
+
+def _read(name: str, value: str) -> Any:
+    if name in ("asset", "codec", "setting"):
+        return value
+    if value == "":
+        return None
+    if name in ("problem", "commit"):
+        return value
+    return int(value) if name in ("bytes", "faces") else float(value)
+
+
 def _at(record: Record, place: tuple[str, ...]) -> Any:
     value: Any = record
     for key in place:
