@@ -27,7 +27,8 @@ from nispcodec.network import Network
 # dropped.
 STEEP, SMALL_SHARE = 1.7, 0.05
 FLAT, SPECK_AREA, LONELY = 0.6, 3e-3, 0.02
-# Vertices of a flat piece about one cell, of which the grid tells no shape.
+# Vertices of a flat piece about one cell, of which the grid tells no shape: meshes go without. Rays
+# do not, as what is left out for them is left out by larger cells.
 CRUMB = 8
 # Vertices of which one is near any place on the surface, a quarter of `LONELY` or less away.
 MANY = 200_000
@@ -59,6 +60,7 @@ def without_noise(
 ) -> tuple[Surface, ExtractionReport]:
     """The surface without spurious components, unless they are to be kept, and the counts."""
     unwanted, labels = spurious(network, surface)
+    unwanted |= _crumbs(network, surface, labels, len(unwanted))
     if keep:
         unwanted[:] = False
     cleaned = without(surface, unwanted, labels)
@@ -85,8 +87,7 @@ def spurious(network: Network, surface: Surface) -> tuple[NDArray[np.bool_], Int
     """Which components are noise (c,) bool, and the component of each vertex (n,).
 
     A component is noise when all of it lies outside the unit ball, when it is small and the field
-    is steep on it, when it is a crumb or a lonely speck and the field is flat, or when it is a
-    small hollow.
+    is steep on it, when it is a lonely speck and the field is flat, or when it is a small hollow.
     """
     count, labels = components(surface)
     if count < 2:
@@ -95,10 +96,18 @@ def spurious(network: Network, surface: Surface) -> tuple[NDArray[np.bool_], Int
     np.minimum.at(nearest, labels, np.linalg.norm(surface.positions, axis=1))
     vertices = np.bincount(labels, minlength=count)
     slope = _mean_slopes(network, surface, labels, vertices)
-    specks = (slope < FLAT) & (vertices * surface.cell**2 < SPECK_AREA)
-    flat = _lonely(surface, labels, specks) | (specks & (vertices <= CRUMB))
+    flat = _lonely(surface, labels, (slope < FLAT) & (vertices * surface.cell**2 < SPECK_AREA))
     hollow = _volumes(surface, labels, vertices < HOLLOW_SHARE * len(labels)) < 0
     return (nearest > OUTSIDE) | (slope > STEEP) | flat | hollow, labels
+
+
+def _crumbs(network: Network, surface: Surface, labels: Integers, count: int) -> NDArray[np.bool_]:
+    """Which of several components (c,) bool are flat and of a single cell."""
+    vertices = np.bincount(labels, minlength=count)
+    crumbs: NDArray[np.bool_] = (vertices <= CRUMB) & (count > 1)
+    if crumbs.any():
+        crumbs &= _mean_slopes(network, surface, labels, vertices) < FLAT
+    return crumbs
 
 
 def _lonely(surface: Surface, labels: Integers, specks: NDArray[np.bool_]) -> NDArray[np.bool_]:
