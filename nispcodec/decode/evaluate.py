@@ -23,7 +23,7 @@ Integers = NDArray[np.integer]
 
 # Bytes of two layers' activations of a block: they stay in a core's cache. Smaller blocks cost more
 # calls than they save, and threads wait for each other at every call.
-CACHE = 1 << 19
+CACHE = 1 << 20
 SMALLEST = 64
 
 
@@ -114,11 +114,9 @@ class _Forward:
     def __call__(self, points: Floats, charts: Charts | None) -> Floats:
         """Outputs (outputs, n) at points (n, 3)."""
         activations = self._input(points, charts)
-        buffers = self._buffers(len(points))
+        buffers = self._buffers(2, len(points))
         for index, layer in enumerate(self.layers[:-1]):
-            following = buffers[index % 2, : len(layer) + 1]
-            following[-1] = 1
-            np.matmul(layer, activations, out=following[:-1])
+            following = _before(layer, activations, buffers[index % 2])
             self._activate(following[:-1])
             activations = following
         outputs = self.layers[-1] @ activations
@@ -136,27 +134,29 @@ class _Forward:
             framed += slopes[:, axis] * coordinate
         return framed
 
-    def _buffers(self, count: int) -> Floats:
-        """Room for two layers (2, width + 1, count), the thread's own: new memory costs time."""
-        size = 2 * (max(self.spec.hidden) + 1) * count
+    def _buffers(self, layers: int, count: int) -> Floats:
+        """Room for (layers, width + 1, count), the thread's own: new memory costs time."""
+        size = layers * (max(self.spec.hidden) + 1) * count
         room: Floats | None = getattr(self._own, "room", None)
         if room is None or room.size < size:
             room = self._own.room = np.empty(size, np.float32)
-        return room[:size].reshape(2, -1, count)
+        return room[:size].reshape(layers, -1, count)
 
     def with_gradient(self, points: Floats) -> tuple[Floats, Floats]:
         """Values (n,) and gradients (n, 3) by one pass forwards and one backwards."""
         activations = encoded = self._input(points, None)
+        buffers = self._buffers(2 + len(self.spec.hidden), len(points))
         slopes: list[Floats] = []
-        for layer in self.layers[:-1]:
-            before = layer @ activations
-            slopes.append(self._activation_slope(before))
-            self._activate(before)
-            activations = np.vstack([before, np.ones((1, len(points)), np.float32)])
+        for index, layer in enumerate(self.layers[:-1]):
+            following = _before(layer, activations, buffers[index % 2])
+            slopes.append(buffers[2 + index, : len(layer)])
+            self._activation_slope(following[:-1], slopes[-1])
+            self._activate(following[:-1])
+            activations = following
         value = self._output(self.layers[-1] @ activations)
         slope = self.layers[-1][:, :-1].T * self._output_slope(value)
         for layer, steep in zip(reversed(self.layers[:-1]), reversed(slopes), strict=True):
-            slope = layer[:, :-1].T @ (slope * steep)
+            slope = layer[:, :-1].T @ np.multiply(slope, steep, out=steep)
         slope = self._through_encoding(encoded[:-1], slope)
         if self.spec.mirror:
             slope = self._through_mirror(points.T, slope)
@@ -209,9 +209,12 @@ class _Forward:
         else:
             np.maximum(values, 0, out=values)
 
-    def _activation_slope(self, before: Floats) -> Floats:
+    def _activation_slope(self, before: Floats, out: Floats) -> None:
         # The factor w0 of a sine layer is already in the folded weights.
-        return np.cos(before) if self.spec.activation == "sine" else (before > 0).astype(np.float32)
+        if self.spec.activation == "sine":
+            np.cos(before, out=out)
+        else:
+            np.greater(before, 0, out=out)
 
     def _output(self, values: Floats) -> Floats:
         if self.spec.output == "tanh":
@@ -239,6 +242,14 @@ def _largest(outputs: Floats) -> NDArray[np.unsignedinteger]:
     numbers = np.arange(count, 0, -1).astype(np.min_scalar_type(count))
     largest = ~(outputs < outputs.max(axis=0))
     return count - (largest.view(np.uint8) * numbers[:, None]).max(axis=0)
+
+
+def _before(layer: Floats, activations: Floats, room: Floats) -> Floats:
+    """A layer's values before its activation, in `room`: (width + 1, n), the last row ones."""
+    following = room[: len(layer) + 1]
+    following[-1] = 1
+    np.matmul(layer, activations, out=following[:-1])
+    return following
 
 
 def _folded(weight: Floats, bias: Floats, scale: np.float32) -> Floats:
