@@ -41,6 +41,9 @@ FULL = 0.95
 TINY = 1e-12
 """A share of the area that is none."""
 
+THIN = 4e-3
+"""What ends less than a quarter of this deeper than it (normalised frame) is thin."""
+
 MEMBRANE_JITTER = 5e-3
 """How far off a membrane (normalised frame) a network may put it."""
 
@@ -92,6 +95,18 @@ class Sampler:
         weight = sizes * (lacking / np.maximum(shares, TINY))[patch]
         found = points_on(self._random, self.solid.pieces, weight, round(lacking.sum()))
         return self.label(self._beside(self._raised(*found), spread), signed=False)
+
+    def thin(self, count: int, times: int, spread: float) -> SampleSet:
+        """As `near`, about those of `count` surface points where a part is thin: `times` for each.
+
+        No more than `count` in all. A network that misses a strap is hardly wrong in the mean.
+        """
+        surface, piece = self._surface(count)
+        behind = surface - THIN * normals(self.solid.pieces[piece])
+        surface = surface[self.field.closest(behind).sdf > -THIN / 4]
+        again = surface.repeat(min(times, count // max(len(surface), 1)), axis=0)
+        again += self._random.normal(scale=THIN / 2, size=again.shape)
+        return self.label(self._beside(again, spread))
 
     def cube(self, count: int) -> SampleSet:
         """Points uniform in the cube [-CUBE, CUBE]^3."""

@@ -25,11 +25,15 @@ CLOSE = 1.5e-3
 UNLIKE_TIMES = 8
 """How often each of these is learned from: if once, a large part shows on the other side too."""
 
+THIN_TIMES = 16
+"""How many samples each point of THIN_COUNT that is on a thin part gets, beside its own four."""
+
 NEAR_COUNT = 80_000
 TIGHT_COUNT = 240_000
 CUBE_COUNT = 80_000
 WIDE_COUNT = 40_000
 UNLIKE_COUNT = 80_000
+THIN_COUNT = 60_000
 SKIN_COUNT = 250_000
 DETAIL_COUNT = 110_000
 CONFUSING_COUNT = 125_000
@@ -78,12 +82,12 @@ def training_sets(sampler: Sampler) -> TrainingSets:
         for spread in (SKIN, CLOSE)
     )
     return TrainingSets(
-        distance=SampleSet.joined(distance),
         charts=SampleSet.joined((close, sampler.confusing(close, CONFUSING_COUNT))),
         held_distance=sampler.near(HELD_OUT_COUNT, SKIN),
         held_skin=sampler.surface(HELD_OUT_COUNT),
         textured=SampleSet.joined((skin, sampler.detailed(skin, DETAIL_COUNT))),
         scarce=sampler.scarce(LEAST_COUNT, SKIN_COUNT, SKIN),
+        distance=SampleSet.joined((*distance, sampler.thin(THIN_COUNT, THIN_TIMES, TIGHT))),
     )
 
 

@@ -115,6 +115,23 @@ def test_patches_too_small_to_have_many_samples_get_those_that_they_lack() -> No
     assert len(sampler.scarce(2, 1000, 1e-3)) == 0
 
 
+def test_thin_parts_get_samples_of_their_own() -> None:
+    body, plate = cube((-1, -1, -1), 2.0), cube((0, 0, 0), 1.0) * [1, 1, 0.004] + [1.5, 0, 0]
+    sampler = Sampler(soup(np.concatenate([body, plate])), seed=0)
+    share = 2 / (24 + 2)
+    samples = sampler.thin(4000, 5, 1e-3)
+    x = sampler.frame.to_world(samples.points.astype(np.float64))[:, 0]
+    assert len(samples) == pytest.approx(5 * share * 4000, rel=0.2)
+    assert (x > 1.4).mean() > 0.9
+    assert (samples.sdf < 0).mean() > 0.1
+    assert len(sampler.thin(1000, 100, 1e-3)) <= 1000
+
+
+def test_a_body_without_thin_parts_gets_none() -> None:
+    found = Sampler(box_asset(), seed=0).thin(4000, 5, 1e-3)
+    assert len(found) < 0.01 * 5 * 4000, "edges alone"
+
+
 def test_barycentric_coordinates_rebuild_the_point() -> None:
     random = np.random.default_rng(0)
     triangles = random.normal(size=(40, 3, 3))
