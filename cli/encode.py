@@ -50,6 +50,11 @@ IMAGE_FORMATS = ("webp", "avif", "jpeg")
 @click.option("--device", default="auto", show_default=True, help="auto, cpu, cuda.")
 @click.option("--threads", type=click.IntRange(0), default=0, help="0, the default: all cores.")
 @click.option("--unwrap", is_flag=True, help="Make new UVs with xatlas (drops the textures).")
+@click.option(
+    "--pad-textures",
+    is_flag=True,
+    help="Fill what no face uses with the colours beside it: no specks at seams.",
+)
 @click.option("--texture-format", type=click.Choice(IMAGE_FORMATS), help="Re-encode the images.")
 @click.option("--texture-quality", type=click.IntRange(1, 100), default=90, show_default=True)
 @pruning_options

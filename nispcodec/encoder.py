@@ -42,6 +42,7 @@ class EncodeConfig:
     seed            of everything random: the same input, seed and threads give the same bytes
     device          "auto", "cpu", "cuda"
     threads         cores to use; 0: all
+    pad_textures    fills what no face uses of an image with the colours beside it, as PNG
     texture_format  None keeps the image files as they are; "webp", "avif", "jpeg" re-encode them
     texture_quality 1 to 100, for a `texture_format`
     textures        False leaves the images out
@@ -56,6 +57,7 @@ class EncodeConfig:
     seed: int = 0
     device: str = "auto"
     threads: int = 0
+    pad_textures: bool = False
     texture_format: str | None = None
     texture_quality: int = 90
     textures: bool = True
@@ -98,7 +100,7 @@ def encode(
     from nispcodec.decode.model import NispModel
 
     config = config or EncodeConfig()
-    materials, textures = _appearance(mesh, config)
+    materials, textures = _appearance(mesh, config, progress)
     sampler, sets = _sample(mesh, config, progress)
 
     def document(networks: Mapping[str, Network]) -> Document:
@@ -118,16 +120,18 @@ def encode(
 
 
 def _appearance(
-    mesh: TexturedMesh, config: EncodeConfig
+    mesh: TexturedMesh, config: EncodeConfig, progress: Listener
 ) -> tuple[tuple[Material, ...], tuple[Texture, ...]]:
+    from nispcodec.mesh.gutters import with_padded_gutters
     from nispcodec.texture import reencode
 
     if not config.textures:
         return tuple(replace(material, maps={}) for material in mesh.materials), ()
-    if config.texture_format is None:
-        return mesh.materials, mesh.textures
-    quality = config.texture_quality
-    return mesh.materials, reencode(mesh.textures, config.texture_format, quality)
+    progress(Progress(stage="textures"))
+    textures = with_padded_gutters(mesh) if config.pad_textures else mesh.textures
+    if config.texture_format is not None:
+        textures = reencode(textures, config.texture_format, config.texture_quality)
+    return mesh.materials, textures
 
 
 def _sample(

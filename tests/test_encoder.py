@@ -15,7 +15,9 @@ from nispcodec.fit import presets
 from nispcodec.fit.presets import Effort
 from nispcodec.format import pack, unpack
 from nispcodec.mesh import training
+from nispcodec.mesh.gutters import with_padded_gutters
 from nispcodec.mesh.procedural import sample_asset
+from nispcodec.texture import reencode
 from tests.mesh.shapes import box_asset, cube, soup
 
 
@@ -27,7 +29,7 @@ def short(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(presets, "PROBE_STEPS", 30)
     monkeypatch.setattr(presets, "PAPER_STEPS", 60)
     monkeypatch.setattr(presets, "PRICES", dict.fromkeys(presets.PRICES, 1e-6))
-    for name in ("NEAR", "TIGHT", "CUBE", "WIDE", "SKIN", "DETAIL", "HELD_OUT", "PAPER"):
+    for name in ("NEAR", "TIGHT", "CUBE", "WIDE", "SKIN", "DETAIL", "HELD_OUT", "PAPER", "THIN"):
         monkeypatch.setattr(training, f"{name}_COUNT", 3000)
 
 
@@ -86,13 +88,14 @@ def test_the_paper_preset_has_the_published_networks_and_every_chart() -> None:
     assert counts == {"sdf": 31_169, "chart": 31_104 + 65 * 6, "uv": 31_874}
 
 
-def test_textures_stay_are_reencoded_or_left_out() -> None:
+def test_textures_stay_are_padded_reencoded_or_left_out() -> None:
     mesh = sample_asset()
     kept, smaller, none = (
         nispcodec.encode(mesh, EncodeConfig(**options)).document
-        for options in ({}, {"texture_format": "webp"}, {"textures": False})
+        for options in ({}, {"pad_textures": True, "texture_format": "webp"}, {"textures": False})
     )
     assert kept.textures == mesh.textures
+    assert smaller.textures == reencode(with_padded_gutters(mesh), "webp", 90)
     assert {texture.mime for texture in smaller.textures} == {"image/webp"}
     assert smaller.materials == mesh.materials
     assert none.textures == ()
@@ -110,5 +113,5 @@ def test_stages_and_networks_are_reported() -> None:
     nispcodec.encode(box_asset(), progress=seen.append)
     assert {progress.network for progress in seen} == {"", "sdf", "chart", "uv"}
     stages = list(dict.fromkeys(progress.stage for progress in seen if not progress.network))
-    assert stages[:3] == ["charts and hidden walls", "samples", "fit"]
-    assert stages[3:] == ["probe how much there is to learn"]
+    assert stages[:4] == ["textures", "charts and hidden walls", "samples", "fit"]
+    assert stages[4:] == ["probe how much there is to learn"]

@@ -1,0 +1,44 @@
+"""Textures whose gutters, what lies between the charts of the atlas, have no colour of their own.
+
+The seams and UVs of a decoded surface are a little off: along a seam it shows some of the gutter.
+"""
+
+from __future__ import annotations
+
+from pathlib import PurePath
+
+import numpy as np
+
+from nispcodec.asset import FloatArray, Texture, TexturedMesh
+from nispcodec.raster import coverage, padded
+from nispcodec.texture import as_texture, image_bytes, named_apart
+
+EDGE = 1e-6
+"""UVs that leave the image by so little do not."""
+
+
+def with_padded_gutters(mesh: TexturedMesh) -> tuple[Texture, ...]:
+    """The mesh's textures as PNG, with the nearest used texel's colour where no face lies.
+
+    An image that no face uses, or that one repeats, stays as it is.
+    """
+    return named_apart(_padded(mesh, number) for number in range(len(mesh.textures)))
+
+
+def _padded(mesh: TexturedMesh, number: int) -> Texture:
+    texture, uvs = mesh.textures[number], _uvs(mesh, number)
+    if not len(uvs) or uvs.min() < -EDGE or uvs.max() > 1 + EDGE:
+        return texture
+    pixels = image_bytes(texture)
+    image = padded(pixels, coverage(uvs, *pixels.shape[:2]))
+    return as_texture(PurePath(texture.name).stem, image, "png", 100)
+
+
+def _uvs(mesh: TexturedMesh, number: int) -> FloatArray:
+    """(f, 3, 2): UVs of the faces that show the image, where it repeats in its first repetition."""
+    uses = [[m for m in each.maps.values() if m.texture == number] for each in mesh.materials]
+    shown = np.array([bool(each) for each in uses], np.bool_)
+    uvs = mesh.corner_uvs[shown[mesh.face_materials] & mesh.has_uv]
+    if all(used.wrap == ("repeat", "repeat") for each in uses for used in each):
+        uvs = uvs - np.floor(uvs.min(axis=1, keepdims=True) + EDGE)
+    return uvs

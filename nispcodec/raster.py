@@ -1,0 +1,98 @@
+"""Which texels of an image the faces of an atlas cover, and what the others take from them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+CANDIDATES = 1 << 21
+
+Floats = NDArray[np.float64]
+Integers = NDArray[np.int32]
+
+
+@dataclass(frozen=True)
+class Texels:
+    """Texels that a face covers: row, column and face (n,), barycentric weights (n, 3)."""
+
+    rows: Integers
+    columns: Integers
+    faces: Integers
+    weights: Floats
+
+
+def texels(corner_uvs: Floats, height: int, width: int) -> Texels:
+    """Every texel of an image whose centre a face covers; the last face where several do.
+
+    corner_uvs (m, 3, 2), v upwards, within [0, 1].
+    """
+    owners = np.full((height, width), -1, np.int32)
+    weights = np.zeros((height, width, 3))
+    for rows, columns, faces, shares in _covered(corner_uvs, height, width):
+        owners[rows, columns] = faces
+        weights[rows, columns] = shares
+    rows, columns = (where.astype(np.int32) for where in np.nonzero(owners >= 0))
+    return Texels(rows, columns, owners[rows, columns], weights[rows, columns])
+
+
+def coverage(corner_uvs: Floats, height: int, width: int) -> NDArray[np.bool_]:
+    """(height, width): which texels' centres a face covers; corner_uvs as `texels` has them."""
+    covered = np.zeros((height, width), np.bool_)
+    for rows, columns, _, _ in _covered(corner_uvs, height, width):
+        covered[rows, columns] = True
+    return covered
+
+
+def padded(image: NDArray[np.uint8], covered: NDArray[np.bool_]) -> NDArray[np.uint8]:
+    """The image (h, w, c) with the nearest covered texel's colour wherever none is covered."""
+    from scipy.ndimage import distance_transform_edt
+
+    if not covered.any():
+        return image
+    nearest = distance_transform_edt(~covered, return_distances=False, return_indices=True)
+    return np.ascontiguousarray(image[tuple(nearest)])
+
+
+def _covered(
+    corner_uvs: Floats, height: int, width: int
+) -> Iterator[tuple[Integers, Integers, Integers, Floats]]:
+    """Texels inside of faces: rows, columns, faces (n,), barycentric weights (n, 3)."""
+    pixels: Floats = corner_uvs * [width, -height] + [0.0, height]
+    for faces, x, y in _candidates(pixels, height, width):
+        shares = _barycentric(pixels[faces], np.column_stack([x + 0.5, y + 0.5]))
+        inside = (shares >= -1e-9).all(axis=1)
+        yield y[inside], x[inside], faces[inside], shares[inside]
+
+
+def _candidates(
+    pixels: Floats, height: int, width: int
+) -> Iterator[tuple[Integers, Integers, Integers]]:
+    """Faces with the texels of their bounding boxes (face, x, y), some millions at a time."""
+    last = [width - 1, height - 1]
+    low = np.clip(np.floor(pixels.min(axis=1)), 0, last).astype(np.int32)
+    high = np.clip(np.floor(pixels.max(axis=1)), 0, last).astype(np.int32)
+    spans = high - low + 1
+    counts = spans.prod(axis=1, dtype=np.int64)
+    bins = (np.cumsum(counts) - 1) // CANDIDATES
+    for part in np.split(np.arange(len(counts)), np.flatnonzero(np.diff(bins)) + 1):
+        faces = np.repeat(part, counts[part])
+        within = np.arange(len(faces)) - np.repeat(
+            np.cumsum(counts[part]) - counts[part], counts[part]
+        )
+        x, y = low[faces, 0] + within % spans[faces, 0], low[faces, 1] + within // spans[faces, 0]
+        yield faces.astype(np.int32), x.astype(np.int32), y.astype(np.int32)
+
+
+def _barycentric(triangles: Floats, points: Floats) -> Floats:
+    """Weights (n, 3) of points (n, 2) in triangles (n, 3, 2); -1 in triangles without area."""
+    a, b, c = triangles.transpose(1, 0, 2)
+    u, v, w = b - a, c - a, points - a
+    area = u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0]
+    second = np.full(len(points), -1.0)
+    third = np.full(len(points), -1.0)
+    np.divide(w[:, 0] * v[:, 1] - w[:, 1] * v[:, 0], area, out=second, where=area != 0)
+    np.divide(u[:, 0] * w[:, 1] - u[:, 1] * w[:, 0], area, out=third, where=area != 0)
+    return np.column_stack([1 - second - third, second, third])
