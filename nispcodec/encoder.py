@@ -42,9 +42,9 @@ class EncodeConfig:
     seed            of everything random: the same input, seed and threads give the same bytes
     device          "auto", "cpu", "cuda"
     threads         cores to use; 0: all
-    pad_textures    fills what no face uses of an image with the colours beside it, as PNG
+    pad_textures    fills what no face uses of an image with the colours beside it
     texture_format  None keeps the image files as they are; "webp", "avif", "jpeg" re-encode them
-    texture_quality 1 to 100, for a `texture_format`
+    texture_quality 1 to 100, for a `texture_format` and for images that are padded
     textures        False leaves the images out
     target_size     bytes of the file without its textures; the networks are made to fit
     target_error    mean distance to the surface (normalised frame); the SDF is made to fit
@@ -128,9 +128,11 @@ def _appearance(
     if not config.textures:
         return tuple(replace(material, maps={}) for material in mesh.materials), ()
     progress(Progress(stage="textures"))
-    textures = with_padded_gutters(mesh) if config.pad_textures else mesh.textures
+    textures, quality = mesh.textures, config.texture_quality
+    if config.pad_textures:
+        textures = with_padded_gutters(mesh, 100 if config.texture_format else quality)
     if config.texture_format is not None:
-        textures = reencode(textures, config.texture_format, config.texture_quality)
+        textures = reencode(textures, config.texture_format, quality)
     return mesh.materials, textures
 
 

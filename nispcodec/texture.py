@@ -55,14 +55,9 @@ def reencode(textures: Iterable[Texture], kind: str, quality: int) -> tuple[Text
 
     JPEG holds no transparency: images that have some stay as they are. Names stay different.
     """
-    return named_apart(_reencoded(texture, kind, quality) for texture in textures)
-
-
-def named_apart(textures: Iterable[Texture]) -> tuple[Texture, ...]:
-    """The same, a later one renamed where an earlier one has its name."""
     again: list[Texture] = []
     for texture in textures:
-        fresh, taken = texture, {other.name for other in again}
+        fresh, taken = _reencoded(texture, kind, quality), {other.name for other in again}
         path, tries = PurePath(fresh.name), count(2)
         while fresh.name in taken:
             fresh = replace(fresh, name=f"{path.stem}-{next(tries)}{path.suffix}")
@@ -74,7 +69,9 @@ def _reencoded(texture: Texture, kind: str, quality: int) -> Texture:
     pixels = image_bytes(texture)
     if kind == "jpeg" and not _is_opaque(pixels):
         return texture
-    return as_texture(PurePath(texture.name).stem, pixels, kind, quality)
+    suffix = "jpg" if kind == "jpeg" else kind
+    name = f"{PurePath(texture.name).stem}.{suffix}"
+    return Texture(name, encode_image(pixels, kind, quality), f"image/{kind}")
 
 
 def image_bytes(texture: Texture) -> NDArray[np.uint8]:
@@ -82,15 +79,14 @@ def image_bytes(texture: Texture) -> NDArray[np.uint8]:
     return np.rint(decode_image(texture) * 255).astype(np.uint8)
 
 
-def as_texture(stem: str, pixels: NDArray[np.uint8], kind: str, quality: int) -> Texture:
-    """A file of pixels (h, w, 4): `kind` "png", "webp", "avif" or "jpeg"."""
+def encode_image(pixels: NDArray[np.uint8], kind: str, quality: int) -> bytes:
+    """A file of pixels (h, w, 4): `kind` "png", which has no quality, "webp", "avif" or "jpeg"."""
     import PIL.Image
 
     file = io.BytesIO()
     image = PIL.Image.fromarray(pixels[..., :3] if _is_opaque(pixels) else pixels)
     image.save(file, kind, quality=quality)
-    suffix = "jpg" if kind == "jpeg" else kind
-    return Texture(f"{stem}.{suffix}", file.getvalue(), f"image/{kind}")
+    return file.getvalue()
 
 
 def _is_opaque(pixels: NDArray[np.uint8]) -> bool:

@@ -95,7 +95,7 @@ def test_textures_stay_are_padded_reencoded_or_left_out() -> None:
         for options in ({}, {"pad_textures": True, "texture_format": "webp"}, {"textures": False})
     )
     assert kept.textures == mesh.textures
-    assert smaller.textures == reencode(with_padded_gutters(mesh), "webp", 90)
+    assert smaller.textures == reencode(with_padded_gutters(mesh, 100), "webp", 90)
     assert {texture.mime for texture in smaller.textures} == {"image/webp"}
     assert smaller.materials == mesh.materials
     assert none.textures == ()

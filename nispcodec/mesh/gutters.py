@@ -5,33 +5,34 @@ The seams and UVs of a decoded surface are a little off: along a seam it shows s
 
 from __future__ import annotations
 
-from pathlib import PurePath
+from dataclasses import replace
 
 import numpy as np
 
 from nispcodec.asset import FloatArray, Texture, TexturedMesh
 from nispcodec.raster import coverage, padded
-from nispcodec.texture import as_texture, image_bytes, named_apart
+from nispcodec.texture import encode_image, image_bytes
 
 EDGE = 1e-6
 """UVs that leave the image by so little do not."""
 
 
-def with_padded_gutters(mesh: TexturedMesh) -> tuple[Texture, ...]:
-    """The mesh's textures as PNG, with the nearest used texel's colour where no face lies.
+def with_padded_gutters(mesh: TexturedMesh, quality: int = 90) -> tuple[Texture, ...]:
+    """The mesh's textures with the nearest used texel's colour where no face lies.
 
-    An image that no face uses, or that one repeats, stays as it is.
+    Formats and names stay; `quality`, 1 to 100, is for those that lose something. An image that no
+    face uses, or that one repeats, stays as it is.
     """
-    return named_apart(_padded(mesh, number) for number in range(len(mesh.textures)))
+    return tuple(_padded(mesh, number, quality) for number in range(len(mesh.textures)))
 
 
-def _padded(mesh: TexturedMesh, number: int) -> Texture:
+def _padded(mesh: TexturedMesh, number: int, quality: int) -> Texture:
     texture, uvs = mesh.textures[number], _uvs(mesh, number)
     if not len(uvs) or uvs.min() < -EDGE or uvs.max() > 1 + EDGE:
         return texture
     pixels = image_bytes(texture)
     image = padded(pixels, coverage(uvs, *pixels.shape[:2]))
-    return as_texture(PurePath(texture.name).stem, image, "png", 100)
+    return replace(texture, data=encode_image(image, texture.mime.split("/")[1], quality))
 
 
 def _uvs(mesh: TexturedMesh, number: int) -> FloatArray:

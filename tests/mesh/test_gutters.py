@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+import io
 from dataclasses import replace
 
 import numpy as np
+import PIL.Image
 import pytest
 
 from nispcodec.asset import Material, Texture, TexturedMesh, TextureMap
 from nispcodec.mesh.gutters import with_padded_gutters
-from nispcodec.texture import as_texture, image_bytes
+from nispcodec.texture import encode_image, image_bytes
 from tests.mesh.shapes import soup
 
 RED, BLUE, GREY = (255, 0, 0, 255), (0, 0, 255, 255), (90, 90, 90, 255)
@@ -23,7 +25,8 @@ def atlas(wrap: str = "repeat", shift: float = 0.0) -> TexturedMesh:
     uvs = np.concatenate([SQUARE / 2, SQUARE / 4 + 0.75])
     triangles = np.concatenate([np.pad(SQUARE, ((0, 0), (0, 0), (0, 1))) + n for n in (0, 3)])
     material = Material(maps={"base_color": TextureMap(0, wrap=(wrap, wrap))})
-    textures = (as_texture("a", pixels, "png", 100), as_texture("b", pixels, "png", 100))
+    data = encode_image(pixels, "png", 100)
+    textures = tuple(Texture(f"{name}.png", data, "image/png") for name in "ab")
     return replace(soup(triangles, uvs + shift), materials=(material,), textures=textures)
 
 
@@ -51,9 +54,12 @@ def test_images_that_are_repeated_or_left_stay(wrap: str, stretch: float) -> Non
     assert with_padded_gutters(mesh) == mesh.textures
 
 
-def test_names_stay_different() -> None:
+@pytest.mark.parametrize("kind", ["jpeg", "webp", "png"])
+def test_formats_and_names_stay(kind: str) -> None:
     mesh = atlas()
-    jpeg = Texture("a.jpg", mesh.textures[0].data, "image/png")
-    maps = {"base_color": TextureMap(0), "emissive": TextureMap(1)}
-    both = replace(mesh, textures=(mesh.textures[0], jpeg), materials=(Material(maps=maps),))
-    assert [texture.name for texture in with_padded_gutters(both)] == ["a.png", "a-2.png"]
+    pixels = image_bytes(mesh.textures[0])
+    before = Texture("own.name", encode_image(pixels, kind, 90), f"image/{kind}")
+    (after,) = with_padded_gutters(replace(mesh, textures=(before,)))
+    assert (after.name, after.mime) == (before.name, before.mime)
+    assert PIL.Image.open(io.BytesIO(after.data)).format == kind.upper()
+    assert np.abs(image_bytes(after)[-1, -1].astype(int) - BLUE).max() < 100
