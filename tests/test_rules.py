@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).parent.parent
-CORE = {"asset", "document", "draw", "errors", "network", "output", "progress", "texture"}
+CORE = {"asset", "document", "draw", "errors", "network", "output", "progress", "raster", "texture"}
 
 # Package -> what it may import: third-party roots, and parts of nispcodec besides CORE.
 RULES: dict[str, tuple[set[str], set[str]]] = {
