@@ -17,7 +17,7 @@ EDGE = 1e-6
 """UVs that leave the image by so little do not."""
 
 
-def with_padded_gutters(mesh: TexturedMesh, quality: int = 90) -> tuple[Texture, ...]:
+def with_padded_gutters(mesh: TexturedMesh, quality: int) -> tuple[Texture, ...]:
     """The mesh's textures with the nearest used texel's colour where no face lies.
 
     Formats and names stay; `quality`, 1 to 100, is for those that lose something. An image that no
