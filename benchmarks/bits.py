@@ -3,9 +3,9 @@
     python -m benchmarks.bits FOLDER [-o benchmarks/results/bits.json]
 
 Predicted: the entropy of a Gaussian of the power of each tensor's symbols, less what draws tell of
-them, as in `nispcodec.fit.rounding`. Beside it, what rounding every weight one step nearer to what
-draws tell would save: the most that a rounding which weighs rate against distortion could gain,
-were distortion free.
+them, as in `nispcodec.train.quantise`. Beside it, what rounding every weight one step nearer to
+what draws tell would save: the most that a rounding which weighs rate against distortion could
+gain, were distortion free.
 """
 
 from __future__ import annotations
@@ -18,11 +18,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from benchmarks.machine import commit
-from nispcodec.fit.rounding import GAUSSIAN_BITS, HEAD
+from nispcodec.core.network import Network
 from nispcodec.format import records, unpack, weights
 from nispcodec.format.constants import NETS
 from nispcodec.format.container import read_container, write_container
-from nispcodec.network import Network
+from nispcodec.train.quantise import GAUSSIAN_BITS, HEAD
 
 Record = dict[str, float]
 

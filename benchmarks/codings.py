@@ -14,10 +14,10 @@ import click
 import numpy as np
 
 from benchmarks.machine import commit
+from nispcodec.core.network import Network, NetworkSpec
 from nispcodec.format import weights
 from nispcodec.format.constants import CODINGS, NETS
 from nispcodec.format.container import read_container, write_container
-from nispcodec.network import Network, NetworkSpec
 
 DEEP = (64,) * 8
 CHARTS = 190

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from benchmarks.source import Source
-from nispcodec.asset import TexturedMesh
+from nispcodec.core.asset import TexturedMesh
 
 
 @dataclass(frozen=True)

@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from benchmarks.codecs import CODECS, codec
 from benchmarks.machine import commit
 from benchmarks.source import Source
-from nispcodec.output import write_atomic
+from nispcodec.core.atomic_write import write_atomic
 
 Array = NDArray[np.float64]
 

@@ -25,11 +25,11 @@ from benchmarks.corners import corners_of, mesh_of
 from benchmarks.machine import commit, machine, versions
 from benchmarks.simplify import simplified
 from benchmarks.source import SEED, Source
-from nispcodec.asset import TexturedMesh
-from nispcodec.decode.model import NispModel
+from nispcodec.core.asset import TexturedMesh
+from nispcodec.core.atomic_write import write_atomic
 from nispcodec.format import pack, unpack
 from nispcodec.metrics.compare import Reference
-from nispcodec.output import write_atomic
+from nispcodec.model import NispModel
 
 FITTED = 1
 MOST_FACES = 2_000_000

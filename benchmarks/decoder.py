@@ -26,17 +26,17 @@ from benchmarks.main_job import PRECISE
 from benchmarks.models import measured, models_options
 from benchmarks.soundness import counted, two_chart_triangles
 from benchmarks.target import Record, Target
-from nispcodec.asset import TexturedMesh
-from nispcodec.decode.atlas import asset_uv
-from nispcodec.decode.components import without_noise
-from nispcodec.decode.evaluate import classify, evaluate
-from nispcodec.decode.extract import extract
-from nispcodec.decode.meshing import textured_mesh
-from nispcodec.document import Document
+from nispcodec.core.asset import TexturedMesh
+from nispcodec.core.document import Document
+from nispcodec.core.network import Network, NetworkSpec
+from nispcodec.extract.components import without_noise
+from nispcodec.extract.isosurface import extract
+from nispcodec.extract.meshing import textured_mesh
 from nispcodec.format import unpack
-from nispcodec.mesh.load import load_mesh
+from nispcodec.infer.evaluate import classify, evaluate
+from nispcodec.infer.texture_coordinates import asset_uv
+from nispcodec.io.load import load_mesh
 from nispcodec.metrics.compare import compare
-from nispcodec.network import Network, NetworkSpec
 
 POINTS = 400_000
 REPEATS = 5

@@ -13,7 +13,7 @@ from benchmarks.codecs import codec
 from benchmarks.isolated import WorkFailed, isolated
 from benchmarks.source import Source
 from benchmarks.store import Record
-from nispcodec.asset import TexturedMesh
+from nispcodec.core.asset import TexturedMesh
 from nispcodec.metrics.pictures import compare_pictures
 from nispcodec.render.camera import turntable
 from nispcodec.render.fragments import Floats

@@ -22,7 +22,7 @@ from benchmarks.machine import commit
 from benchmarks.main_job import RESULTS as MAIN_JOB
 from benchmarks.rows import Row, from_csv, row
 from benchmarks.summary import OURS, RIVAL, duels
-from nispcodec.output import write_atomic
+from nispcodec.core.atomic_write import write_atomic
 
 PRECISE = ("spot", "food_apple_01", "chess_king", "tea_set_01")
 POINTS = Path("benchmarks/results/bench.csv")

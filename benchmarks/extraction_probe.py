@@ -12,13 +12,13 @@ from pathlib import Path
 import click
 import numpy as np
 
-from nispcodec.decode.components import without_noise
-from nispcodec.decode.evaluate import evaluate
-from nispcodec.decode.extract import extract
-from nispcodec.decode.grid import LIMIT
-from nispcodec.decode.meshing import default_resolution, textured_mesh
-from nispcodec.document import Document
+from nispcodec.core.document import Document
+from nispcodec.extract.components import without_noise
+from nispcodec.extract.grid import LIMIT
+from nispcodec.extract.isosurface import extract
+from nispcodec.extract.meshing import default_resolution, textured_mesh
 from nispcodec.format import unpack
+from nispcodec.infer.evaluate import evaluate
 
 
 def sparse(document: Document, resolution: int) -> dict[str, float]:

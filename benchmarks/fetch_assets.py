@@ -18,7 +18,7 @@ from pathlib import Path
 
 import click
 
-from nispcodec.output import write_atomic
+from nispcodec.core.atomic_write import write_atomic
 
 PACKAGE = "reachy-mini==1.13.0"
 SHA256 = "11776b3b1283e0f8b0c9f5c79301f4be33d0b21ce5756e1253d57d4afabdb8a3"

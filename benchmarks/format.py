@@ -29,12 +29,12 @@ from PIL import Image
 
 from benchmarks.machine import commit, machine, versions
 from benchmarks.target import Target
-from nispcodec.asset import Material, Texture, TextureMap
-from nispcodec.document import ChartTable, Document, Frame
+from nispcodec.core.asset import Material, Texture, TextureMap
+from nispcodec.core.document import ChartTable, Document, Frame
+from nispcodec.core.network import Network, NetworkSpec
+from nispcodec.core.texture import decode_image
 from nispcodec.format import inspect, pack, unpack
 from nispcodec.format.verify import verify
-from nispcodec.network import Network, NetworkSpec
-from nispcodec.texture import decode_image
 
 CHARTS = 16
 WIDTHS = {"10 kB": 38, "50 kB": 88}

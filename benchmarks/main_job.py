@@ -19,14 +19,14 @@ import numpy as np
 from benchmarks.machine import commit, machine, versions
 from benchmarks.measure import Run, run
 from benchmarks.target import Record, Target
-from nispcodec.asset import TexturedMesh
-from nispcodec.decode.model import NispModel
+from nispcodec.core.asset import TexturedMesh
+from nispcodec.core.atomic_write import write_atomic
 from nispcodec.format import unpack
-from nispcodec.mesh.load import load_mesh
+from nispcodec.io.load import load_mesh
 from nispcodec.metrics.compare import compare
 from nispcodec.metrics.pictures import compare_pictures
 from nispcodec.metrics.surface import frame_of
-from nispcodec.output import write_atomic
+from nispcodec.model import NispModel
 from nispcodec.render.camera import turntable
 from nispcodec.render.views import on_white, render_views
 

@@ -13,7 +13,7 @@ from pathlib import Path
 import click
 
 from benchmarks.machine import commit, machine
-from nispcodec.mesh.load import load_mesh
+from nispcodec.io.load import load_mesh
 from nispcodec.metrics.compare import Reference
 
 SHIFT = 1e-3

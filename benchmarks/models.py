@@ -12,7 +12,7 @@ import click
 
 from benchmarks.machine import commit, machine, versions
 from benchmarks.target import Record
-from nispcodec.output import write_atomic
+from nispcodec.core.atomic_write import write_atomic
 
 Command = Callable[..., None]
 

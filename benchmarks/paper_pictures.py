@@ -23,13 +23,30 @@ from torch import Tensor
 import nispcodec
 from benchmarks.models import measured, models_options
 from benchmarks.target import Record, Target
-from nispcodec.asset import TexturedMesh
-from nispcodec.decode.evaluate import evaluate
-from nispcodec.decode.model import NispModel
-from nispcodec.encoder import GAP
-from nispcodec.fit.module import Module
-from nispcodec.fit.parallel import fit_networks
-from nispcodec.fit.presets import (
+from nispcodec.core.asset import TexturedMesh
+from nispcodec.core.atomic_write import write_atomic
+from nispcodec.core.network import Network, NetworkSpec
+from nispcodec.core.progress import Progress
+from nispcodec.dataset.recipes import TrainingSets, training_sets
+from nispcodec.dataset.sample_set import SampleSet
+from nispcodec.dataset.sampler import Sampler
+from nispcodec.encode.recipe import GAP
+from nispcodec.infer.evaluate import evaluate
+from nispcodec.io.load import load_mesh
+from nispcodec.metrics.color import color_at
+from nispcodec.metrics.parameterisation import distortion_summary
+from nispcodec.metrics.pictures import compare_pictures
+from nispcodec.metrics.psnr import psnr
+from nispcodec.metrics.sides import sides_of
+from nispcodec.metrics.surface import Surface
+from nispcodec.model import NispModel
+from nispcodec.render.camera import Camera, turntable
+from nispcodec.render.field import OPENING
+from nispcodec.render.fragments import Floats, Indices, Scene
+from nispcodec.render.images import image_bytes
+from nispcodec.render.views import scene_of
+from nispcodec.train.backend.torch.module import Module
+from nispcodec.train.presets import (
     BATCH,
     EFFORTS,
     MEMORIES,
@@ -38,25 +55,8 @@ from nispcodec.fit.presets import (
     paper_tasks,
     steps_in,
 )
-from nispcodec.fit.task import Batch, Schedule, Task
-from nispcodec.mesh.load import load_mesh
-from nispcodec.mesh.sample_set import SampleSet
-from nispcodec.mesh.samples import Sampler
-from nispcodec.mesh.training import TrainingSets, training_sets
-from nispcodec.metrics.color import color_at
-from nispcodec.metrics.parameterisation import distortion_summary
-from nispcodec.metrics.pictures import compare_pictures
-from nispcodec.metrics.psnr import psnr
-from nispcodec.metrics.sides import sides_of
-from nispcodec.metrics.surface import Surface
-from nispcodec.network import Network, NetworkSpec
-from nispcodec.output import write_atomic
-from nispcodec.progress import Progress
-from nispcodec.render.camera import Camera, turntable
-from nispcodec.render.field import OPENING
-from nispcodec.render.fragments import Floats, Indices, Scene
-from nispcodec.render.images import image_bytes
-from nispcodec.render.views import scene_of
+from nispcodec.train.task import Batch, Schedule, Task
+from nispcodec.train.workers import fit_networks
 
 RESULTS = Path("benchmarks/results/paper_pictures.json")
 PAINTERS = ("ours", "unconditioned", "colour")

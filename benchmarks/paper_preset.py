@@ -17,11 +17,11 @@ import click
 
 import nispcodec
 from benchmarks.machine import commit, machine, versions
-from nispcodec.fit import presets
+from nispcodec.core.atomic_write import write_atomic
+from nispcodec.core.progress import Progress
 from nispcodec.format import pack
-from nispcodec.mesh.load import load_mesh
-from nispcodec.output import write_atomic
-from nispcodec.progress import Progress
+from nispcodec.io.load import load_mesh
+from nispcodec.train import presets
 
 RESULTS = "benchmarks/results/paper_preset.json"
 POINTS = 100

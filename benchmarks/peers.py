@@ -20,7 +20,7 @@ from benchmarks.machine import commit
 from benchmarks.rows import ERRORS, Row, curve, pairs, row
 from benchmarks.store import Store
 from benchmarks.summary import LEVELS, RIVAL, fixed
-from nispcodec.output import write_atomic
+from nispcodec.core.atomic_write import write_atomic
 
 SHOWN = ("setting", "faces", "bytes", "distance", "distance_p99", "uv", "uv_median", "color_psnr")
 

@@ -20,9 +20,9 @@ import nispcodec
 from benchmarks.measure import run
 from benchmarks.models import measured, models_options
 from benchmarks.target import Record, Target
-from nispcodec.decode.model import NispModel
-from nispcodec.mesh.load import load_mesh
+from nispcodec.io.load import load_mesh
 from nispcodec.metrics.pictures import compare_pictures
+from nispcodec.model import NispModel
 from nispcodec.render.camera import turntable
 from nispcodec.render.fragments import Floats, Scene
 from nispcodec.render.maps import Maps

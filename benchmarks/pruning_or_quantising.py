@@ -29,28 +29,28 @@ import torch
 from benchmarks.bjontegaard import front
 from benchmarks.codings import stored
 from benchmarks.machine import commit, machine, versions
-from nispcodec.decode.evaluate import evaluate
-from nispcodec.encoder import GAP
-from nispcodec.fit.losses import (
+from nispcodec.core.atomic_write import write_atomic
+from nispcodec.core.network import Network, NetworkSpec
+from nispcodec.core.progress import silent
+from nispcodec.dataset.recipes import training_sets
+from nispcodec.dataset.sample_set import SampleSet
+from nispcodec.dataset.sampler import Sampler
+from nispcodec.encode.recipe import GAP
+from nispcodec.infer.evaluate import evaluate
+from nispcodec.io.load import load_mesh
+from nispcodec.train.backend.torch.losses import (
     CURVATURES,
     distance_error,
     relative_distance_loss,
     uv_error,
     uv_loss,
 )
-from nispcodec.fit.presets import PRICES as PRESET_PRICES
-from nispcodec.fit.prune import Mask
-from nispcodec.fit.sizes import even_width
-from nispcodec.fit.task import Rounding, Schedule, Task
-from nispcodec.fit.tickets import tickets
-from nispcodec.fit.train import train
-from nispcodec.mesh.load import load_mesh
-from nispcodec.mesh.sample_set import SampleSet
-from nispcodec.mesh.samples import Sampler
-from nispcodec.mesh.training import training_sets
-from nispcodec.network import Network, NetworkSpec
-from nispcodec.output import write_atomic
-from nispcodec.progress import silent
+from nispcodec.train.loop import train
+from nispcodec.train.lottery_ticket import tickets
+from nispcodec.train.presets import PRICES as PRESET_PRICES
+from nispcodec.train.prune import Mask
+from nispcodec.train.sizing import even_width
+from nispcodec.train.task import Rounding, Schedule, Task
 
 RESULTS = Path("benchmarks/results/pruning_or_quantising.json")
 ASSETS = ("spot", "chess_king", "tea_set_01")

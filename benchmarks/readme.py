@@ -22,7 +22,7 @@ from benchmarks.crossover import RESULTS as CROSSOVER
 from benchmarks.duel import PRECISE
 from benchmarks.duel import RESULTS as DUEL
 from benchmarks.main_job import RESULTS
-from nispcodec.output import write_atomic
+from nispcodec.core.atomic_write import write_atomic
 
 README = Path("README.md")
 BEGIN, END = "<!-- table: python -m benchmarks.readme -->\n", "<!-- end of table -->\n"

@@ -14,7 +14,7 @@ from benchmarks.source import SAMPLES, SEED
 from benchmarks.store import Record, Store
 from benchmarks.summary import summarised
 from benchmarks.textures import TEXTURES
-from nispcodec.output import write_atomic
+from nispcodec.core.atomic_write import write_atomic
 
 SCHEMA = 1
 

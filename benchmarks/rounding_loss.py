@@ -20,13 +20,13 @@ import click
 import nispcodec
 from benchmarks.models import measured, models_options
 from benchmarks.target import Record, Target
-from nispcodec.decode.model import NispModel
-from nispcodec.encoder import EncodeConfig
-from nispcodec.fit import parallel
-from nispcodec.fit.task import Task
-from nispcodec.mesh.load import load_mesh
+from nispcodec.core.network import Network
+from nispcodec.encode.recipe import EncodeConfig
+from nispcodec.io.load import load_mesh
 from nispcodec.metrics.compare import Reference
-from nispcodec.network import Network
+from nispcodec.model import NispModel
+from nispcodec.train import workers as parallel
+from nispcodec.train.task import Task
 
 RESULTS = Path("benchmarks/results/rounding_loss.json")
 PLACES = {

@@ -13,12 +13,12 @@ import click
 import numpy as np
 from numpy.typing import NDArray
 
-from nispcodec.asset import TexturedMesh
-from nispcodec.decode.atlas import asset_uv
-from nispcodec.decode.evaluate import classify
-from nispcodec.decode.meshing import textured_mesh
-from nispcodec.document import Document
+from nispcodec.core.asset import TexturedMesh
+from nispcodec.core.document import Document
+from nispcodec.extract.meshing import textured_mesh
 from nispcodec.format import unpack
+from nispcodec.infer.evaluate import classify
+from nispcodec.infer.texture_coordinates import asset_uv
 
 # UVs are told apart by more than what rounding positions to the world frame and back can do.
 SAME_UV = 1e-3

@@ -9,8 +9,8 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from nispcodec.asset import TexturedMesh
-from nispcodec.mesh.load import load_mesh
+from nispcodec.core.asset import TexturedMesh
+from nispcodec.io.load import load_mesh
 from nispcodec.metrics.compare import Reference
 from nispcodec.metrics.sides import sides_of
 from nispcodec.metrics.surface import SurfacePoints

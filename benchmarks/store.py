@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from benchmarks.codecs import Setting
-from nispcodec.output import write_atomic
+from nispcodec.core.atomic_write import write_atomic
 
 Record = dict[str, Any]
 

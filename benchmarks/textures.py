@@ -12,9 +12,9 @@ from benchmarks.isolated import WorkFailed, isolated
 from benchmarks.machine import commit
 from benchmarks.source import Source
 from benchmarks.store import Record
-from nispcodec.asset import Texture
+from nispcodec.core.asset import Texture
+from nispcodec.core.texture import decode_image, reencode
 from nispcodec.metrics.psnr import psnr
-from nispcodec.texture import decode_image, reencode
 
 TEXTURES = "textures"
 ORIGINAL = "original"

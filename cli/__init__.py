@@ -55,7 +55,7 @@ class LazyGroup(click.Group):
 
 def _explained(error: Exception) -> str:
     """The text for an error the user can mend; raises any other again."""
-    from nispcodec.errors import NispError
+    from nispcodec.core.errors import NispError
 
     if isinstance(error, OSError) and error.errno != errno.EPIPE:
         return f"{error.filename}: {error.strerror}" if error.filename else str(error)

@@ -11,7 +11,7 @@ from .progress import working
 from .report import print_group, print_json
 
 if TYPE_CHECKING:
-    from nispcodec.asset import TexturedMesh
+    from nispcodec.core.asset import TexturedMesh
     from nispcodec.metrics.compare import Report
 
 
@@ -33,7 +33,7 @@ def command(
     \b
     Example: nisp compare model.obj model.nisp
     """
-    from nispcodec.mesh.load import load_mesh
+    from nispcodec.io.load import load_mesh
 
     mesh = load_mesh(original)
     with working(f"comparing {decoded.name} with {original.name}"):
@@ -50,7 +50,7 @@ def command(
 
 
 def _compare_mesh(original: TexturedMesh, path: Path, how: dict[str, Any]) -> Report:
-    from nispcodec.mesh.load import load_mesh
+    from nispcodec.io.load import load_mesh
     from nispcodec.metrics.compare import compare
 
     return compare(original, load_mesh(path), **how)

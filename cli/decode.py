@@ -12,8 +12,8 @@ from .files import output_option
 from .progress import working
 
 if TYPE_CHECKING:
-    from nispcodec.asset import TexturedMesh
-    from nispcodec.decode.model import NispModel
+    from nispcodec.core.asset import TexturedMesh
+    from nispcodec.model import NispModel
 
 SUFFIXES = (".glb", ".obj", ".ply", ".stl")
 REBAKE_FACES = 20_000
@@ -64,7 +64,7 @@ def command(
     Example: nisp decode model.nisp --mesh -o out.glb
     """
     import nispcodec
-    from nispcodec.decode.writers import write_mesh
+    from nispcodec.io.save import write_mesh
 
     if colors and rebake:
         raise click.UsageError("--colors and --rebake: expected one of them, found both")
@@ -83,7 +83,7 @@ def command(
 
 def baked(model: NispModel, mesh: TexturedMesh, size: int) -> TexturedMesh:
     """The mesh with an atlas and textures of its own."""
-    from nispcodec.decode.rebake import rebaked
-    from nispcodec.mesh.unwrap import unwrap
+    from nispcodec.bake.rebake import rebaked
+    from nispcodec.bake.unwrap import unwrap
 
     return replace(rebaked(model, unwrap(mesh), size), warnings=mesh.warnings)

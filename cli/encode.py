@@ -15,8 +15,8 @@ from .report import print_group, print_json, rate
 from .sizes import parsed_size
 
 if TYPE_CHECKING:
-    from nispcodec.asset import TexturedMesh
-    from nispcodec.decode.model import NispModel
+    from nispcodec.core.asset import TexturedMesh
+    from nispcodec.model import NispModel
 
 PRESETS = ("balanced", "paper", "fast", "best")
 IMAGE_FORMATS = ("webp", "avif", "jpeg")
@@ -95,12 +95,12 @@ def command(
 
 
 def _loaded(path: Path, unwrap: bool) -> TexturedMesh:
-    from nispcodec.mesh.load import load_mesh
+    from nispcodec.io.load import load_mesh
 
     mesh = load_mesh(path)
     if not unwrap:
         return mesh
-    from nispcodec.mesh.unwrap import unwrap as unwrapped
+    from nispcodec.bake.unwrap import unwrap as unwrapped
 
     return unwrapped(mesh)
 

@@ -11,9 +11,9 @@ import click
 from .report import print_group, print_json, rate
 
 if TYPE_CHECKING:
-    from nispcodec.asset import Material, Texture
-    from nispcodec.document import Document
-    from nispcodec.network import Network
+    from nispcodec.core.asset import Material, Texture
+    from nispcodec.core.document import Document
+    from nispcodec.core.network import Network
 
 
 @click.command("info", short_help="Show what a .nisp file holds.")
@@ -79,7 +79,7 @@ def list_textures(document: Document) -> list[dict[str, Any]]:
 
 
 def _pixels(texture: Texture) -> str:
-    from nispcodec.texture import decode_image
+    from nispcodec.core.texture import decode_image
 
     height, width = decode_image(texture).shape[:2]
     return f"{width} x {height}"

@@ -13,14 +13,14 @@ from typing import TYPE_CHECKING
 import click
 
 if TYPE_CHECKING:
-    from nispcodec.progress import Listener, Progress
+    from nispcodec.core.progress import Listener, Progress
 
 PLAIN_INTERVAL = 5.0
 
 
 def encode_progress(quiet: bool) -> AbstractContextManager[Listener]:
     """Bars on a terminal, a line every few seconds elsewhere, nothing when quiet."""
-    from nispcodec.progress import silent
+    from nispcodec.core.progress import silent
 
     if quiet:
         return nullcontext(silent)

@@ -35,7 +35,7 @@ def command(model: Path, points: Path, output: Path, frame: str) -> None:
     Example: nisp query model.nisp points.npy -o answers.npz
     """
     import nispcodec
-    from nispcodec.output import write_atomic
+    from nispcodec.core.atomic_write import write_atomic
 
     asked = read_points(points)
     loaded = nispcodec.load(model)
@@ -57,7 +57,7 @@ def read_points(path: Path) -> NDArray[np.float64]:
     """
     import numpy as np
 
-    from nispcodec.errors import QueryError
+    from nispcodec.core.errors import QueryError
 
     readers = {".npy": _read_npy, ".csv": _read_csv}
     suffix = path.suffix.lower()

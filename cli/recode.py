@@ -12,7 +12,7 @@ from .files import output_option
 from .report import print_group, rate
 
 if TYPE_CHECKING:
-    from nispcodec.document import Document
+    from nispcodec.core.document import Document
 
 CODINGS = ("dense", "coo", "csc", "csr", "dia", "entropy", "drawn")
 IMAGE_FORMATS = ("webp", "avif", "jpeg")
@@ -40,8 +40,8 @@ def command(
     \b
     Example: nisp recode model.nisp -o small.nisp --texture-format webp
     """
+    from nispcodec.core.atomic_write import write_atomic
     from nispcodec.format import pack, read
-    from nispcodec.output import write_atomic
 
     document = read(model)
     if no_textures:
@@ -59,7 +59,7 @@ def _without_textures(document: Document) -> Document:
 
 
 def _with_textures(document: Document, kind: str, quality: int) -> Document:
-    from nispcodec.texture import reencode
+    from nispcodec.core.texture import reencode
 
     images = reencode(document.textures, kind, quality)
     return replace(document, textures=images)

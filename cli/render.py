@@ -57,7 +57,7 @@ def command(
     \b
     Example: nisp render model.nisp -o out.png --view 45,20
     """
-    from nispcodec.output import write_atomic
+    from nispcodec.core.atomic_write import write_atomic
     from nispcodec.render import camera
     from nispcodec.render.images import image_bytes
 
@@ -84,7 +84,7 @@ def pictures(
 ) -> Iterator[Floats]:
     """One picture a camera, with progress."""
     import nispcodec
-    from nispcodec.progress import Progress
+    from nispcodec.core.progress import Progress
     from nispcodec.render.channels import channel_picture
     from nispcodec.render.maps import Maps
     from nispcodec.render.picture import Eye

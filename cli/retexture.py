@@ -30,9 +30,9 @@ def command(model: Path, slots: tuple[str, ...], material: str | None, output: P
     \b
     Example: nisp retexture model.nisp --slot base_color=edited.png -o new.nisp
     """
+    from nispcodec.core.atomic_write import write_atomic
+    from nispcodec.edit.retexture import retextured
     from nispcodec.format import pack, read
-    from nispcodec.output import write_atomic
-    from nispcodec.retexture import retextured
 
     document = read(model)
     for text in slots:

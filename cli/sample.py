@@ -17,8 +17,8 @@ def command(output: Path) -> None:
     \b
     Example: nisp sample -o demo
     """
-    from nispcodec.decode.writers import write_mesh
-    from nispcodec.mesh.procedural import sample_asset
+    from nispcodec.io.save import write_mesh
+    from nispcodec.procedural.mug import sample_asset
 
     output.mkdir(parents=True, exist_ok=True)
     for path in write_mesh(sample_asset(), output / NAME):

@@ -12,8 +12,8 @@ from .progress import encode_progress
 from .report import print_json
 
 if TYPE_CHECKING:
-    from nispcodec.asset import TexturedMesh
-    from nispcodec.decode.model import NispModel
+    from nispcodec.core.asset import TexturedMesh
+    from nispcodec.model import NispModel
 
 
 @click.command("sheet", short_help="Draw original and decode side by side, with the numbers.")
@@ -31,8 +31,8 @@ def command(original: Path, decoded: Path, output: Path, size: int, as_json: boo
     \b
     Example: nisp sheet model.obj model.nisp -o sheet.png
     """
-    from nispcodec.mesh.load import load_mesh
-    from nispcodec.output import write_atomic
+    from nispcodec.core.atomic_write import write_atomic
+    from nispcodec.io.load import load_mesh
     from nispcodec.render.images import image_bytes
     from nispcodec.render.sheet import sheet
 
@@ -49,7 +49,7 @@ def command(original: Path, decoded: Path, output: Path, size: int, as_json: boo
 
 def _decoded(path: Path) -> NispModel | TexturedMesh:
     import nispcodec
-    from nispcodec.mesh.load import load_mesh
+    from nispcodec.io.load import load_mesh
 
     return nispcodec.load(path) if path.suffix.lower() == ".nisp" else load_mesh(path)
 

@@ -18,8 +18,8 @@ def command(model: Path, output: Path) -> None:
     \b
     Example: nisp unpack model.nisp -o textures
     """
+    from nispcodec.core.atomic_write import write_atomic
     from nispcodec.format import read
-    from nispcodec.output import write_atomic
 
     textures = read(model).textures
     output.mkdir(parents=True, exist_ok=True)

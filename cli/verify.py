@@ -21,8 +21,8 @@ def command(ctx: click.Context, model: Path, as_json: bool) -> None:
     \b
     Example: nisp verify model.nisp
     """
+    from nispcodec.core.texture import decode_image
     from nispcodec.format.verify import verify
-    from nispcodec.texture import decode_image
 
     problems = verify(model.read_bytes(), decode_image)
     if as_json:

@@ -11,24 +11,36 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).parent.parent
-CORE = {"asset", "document", "draw", "errors", "network", "output", "progress", "raster", "texture"}
 
-# Package -> what it may import: third-party roots, and parts of nispcodec besides CORE.
+# Folder -> third-party roots that it may import, and other folders of nispcodec.
 RULES: dict[str, tuple[set[str], set[str]]] = {
-    "mesh": ({"numpy", "scipy", "trimesh", "igl", "PIL", "xatlas"}, {"mesh"}),
-    "fit": ({"numpy", "torch"}, {"fit", "mesh"}),
-    "format": ({"numpy", "msgpack", "zstandard"}, {"format"}),
-    "decode": (
-        {"numpy", "scipy", "skimage", "PIL", "threadpoolctl", "fast_simplification"},
-        {"decode"},
+    "core": ({"numpy", "scipy", "PIL"}, set()),
+    "io": ({"numpy", "PIL"}, {"core", "geometry"}),
+    "geometry": ({"numpy", "scipy", "igl"}, {"core", "dataset"}),
+    "dataset": ({"numpy", "scipy"}, {"core", "geometry"}),
+    "train": ({"numpy", "torch"}, {"core", "dataset", "geometry"}),
+    "format": ({"numpy", "msgpack", "zstandard"}, {"core"}),
+    "infer": ({"numpy", "threadpoolctl"}, {"core"}),
+    "extract": ({"numpy", "scipy", "fast_simplification"}, {"core", "infer"}),
+    "model": ({"numpy"}, {"core", "infer", "extract"}),
+    "metrics": ({"numpy", "scipy", "skimage", "igl"}, {"core"}),
+    "render": (
+        {"numpy", "scipy", "embreex", "PIL"},
+        {"core", "infer", "extract", "model", "metrics"},
     ),
-    "metrics": ({"numpy", "scipy", "skimage", "igl", "PIL"}, {"metrics"}),
-    "render": ({"numpy", "scipy", "embreex", "PIL"}, {"render", "decode", "metrics"}),
+    "bake": ({"numpy", "PIL", "xatlas"}, {"core", "io", "model"}),
+    "edit": ({"numpy"}, {"core", "io"}),
+    "procedural": ({"numpy", "PIL"}, {"core"}),
+    "encode": (
+        {"numpy"},
+        {"core", "geometry", "dataset", "train", "format", "infer", "model", "edit"},
+    ),
 }
 
 
 def sources(package: str) -> Iterator[Path]:
-    return (ROOT / "nispcodec" / package).rglob("*.py")
+    place = ROOT / "nispcodec" / package
+    return place.rglob("*.py") if place.is_dir() else iter([place.with_suffix(".py")])
 
 
 def imported(path: Path) -> set[str]:
@@ -46,7 +58,7 @@ def forbidden(name: str, package: str) -> bool:
     third_party, ours = RULES[package]
     root, _, rest = name.partition(".")
     if root == "nispcodec":
-        return rest.split(".")[0] not in ours | CORE
+        return rest.split(".")[0] not in {package, *ours}
     return root not in sys.stdlib_module_names and root not in third_party
 
 
@@ -59,6 +71,20 @@ def test_a_package_imports_only_what_its_place_allows(package: str) -> None:
         if forbidden(name, package)
     }
     assert not wrong
+
+
+def test_every_folder_has_a_rule() -> None:
+    found = {path.stem for path in (ROOT / "nispcodec").iterdir() if not path.name.startswith("_")}
+    assert found - {"py"} == set(RULES)
+
+
+def test_a_rule_allows_nothing_that_nobody_needs() -> None:
+    for package, (third_party, ours) in RULES.items():
+        used = {name for path in sources(package) for name in imported(path)}
+        roots = {name.split(".")[0] for name in used}
+        rooms = {name.split(".")[1] for name in used if name.startswith("nispcodec.")}
+        assert not third_party - roots, package
+        assert not ours - rooms, package
 
 
 def test_nothing_in_the_library_imports_the_command_line_or_the_benchmarks() -> None:

@@ -7,9 +7,9 @@ from io import BytesIO
 import numpy as np
 from numpy.typing import NDArray
 
-from nispcodec.asset import Material, Texture, TextureMap
-from nispcodec.document import ChartTable, Document, Frame
-from nispcodec.network import Network, NetworkSpec
+from nispcodec.core.asset import Material, Texture, TextureMap
+from nispcodec.core.document import ChartTable, Document, Frame
+from nispcodec.core.network import Network, NetworkSpec
 
 
 def relu_network(

@@ -11,7 +11,7 @@ from importlib import import_module
 from typing import Protocol, cast
 
 from benchmarks.source import Source
-from nispcodec.asset import TexturedMesh
+from nispcodec.core.asset import TexturedMesh
 
 Setting = dict[str, str | int | float]
 

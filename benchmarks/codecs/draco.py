@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from benchmarks.codecs import Setting
 from benchmarks.corners import Corners, corners_of, mesh_of
 from benchmarks.source import Source
-from nispcodec.asset import TexturedMesh
+from nispcodec.core.asset import TexturedMesh
 
 LEVEL = 10
 # The names with which Draco tells positions, UVs and others apart.

@@ -13,9 +13,9 @@ from numpy.typing import NDArray
 from benchmarks.codecs import Setting
 from benchmarks.corners import corners_of
 from benchmarks.source import Source
-from nispcodec.asset import TexturedMesh
-from nispcodec.mesh.folder import Folder
-from nispcodec.mesh.gltf import read_gltf
+from nispcodec.core.asset import TexturedMesh
+from nispcodec.io.folder import Folder
+from nispcodec.io.read.gltf import read_gltf
 
 ARRAYS, INDICES = 34962, 34963
 TYPES = {"<f4": 5126, "<u4": 5125, "<u2": 5123}

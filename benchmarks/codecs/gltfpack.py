@@ -12,7 +12,7 @@ from pathlib import Path
 
 from benchmarks.codecs import Setting, Unavailable, glb
 from benchmarks.source import Source
-from nispcodec.asset import TexturedMesh
+from nispcodec.core.asset import TexturedMesh
 
 LOCAL = Path("node_modules/.bin/gltfpack")
 BITS = ((14, 12), (12, 12), (11, 11), (10, 10), (9, 9))

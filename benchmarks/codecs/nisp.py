@@ -9,10 +9,10 @@ from typing import Any
 import nispcodec
 from benchmarks.codecs import Setting
 from benchmarks.source import SEED, Source
-from nispcodec.asset import TexturedMesh
-from nispcodec.decode.model import NispModel
-from nispcodec.encoder import PRESETS
+from nispcodec.core.asset import TexturedMesh
+from nispcodec.encode.recipe import PRESETS
 from nispcodec.format import pack, unpack
+from nispcodec.model import NispModel
 
 PAPER, SLOW = "paper", "best"
 # Bytes: with these a curve has the five points that a Bjontegaard-delta rate wants.

@@ -10,9 +10,9 @@ from numpy.typing import NDArray
 from benchmarks.codecs import Setting
 from benchmarks.codecs.glb import with_materials
 from benchmarks.source import Source
-from nispcodec.asset import TexturedMesh
-from nispcodec.mesh.folder import Folder
-from nispcodec.mesh.obj import read_obj
+from nispcodec.core.asset import TexturedMesh
+from nispcodec.io.folder import Folder
+from nispcodec.io.read.obj import read_obj
 
 AS_IS = "as it is"
 

@@ -7,7 +7,7 @@ import lzma
 from benchmarks.codecs import Setting, obj
 from benchmarks.codecs.obj import settings
 from benchmarks.source import Source
-from nispcodec.asset import TexturedMesh
+from nispcodec.core.asset import TexturedMesh
 
 __all__ = ["decode", "encode", "settings"]
 

@@ -16,7 +16,7 @@ from benchmarks.paper.queries import queries
 from benchmarks.paper.row import Comparison
 from benchmarks.paper.sizes import sizes
 from benchmarks.store import Store
-from nispcodec.output import write_atomic
+from nispcodec.core.atomic_write import write_atomic
 
 HEAD = "# The paper's numbers beside ours\n\nWritten by `python -m benchmarks.paper`.\n"
 

@@ -25,20 +25,20 @@ from benchmarks.codings import stored
 from benchmarks.machine import commit, machine, versions
 from benchmarks.paper.pruning_figure import draw, tables
 from benchmarks.paper.pruning_published import RATES, SIZED, SIZES
-from nispcodec.decode.evaluate import evaluate
-from nispcodec.fit.losses import uv_loss
-from nispcodec.fit.presets import paper_tasks
-from nispcodec.fit.prune import STRATEGIES, Mask
-from nispcodec.fit.task import Task
-from nispcodec.fit.tickets import tickets
-from nispcodec.fit.train import train
-from nispcodec.mesh.load import load_mesh
-from nispcodec.mesh.sample_set import SampleSet
-from nispcodec.mesh.samples import BETA, Sampler
-from nispcodec.mesh.training import SKIN, TrainingSets
-from nispcodec.network import Network
-from nispcodec.output import write_atomic
-from nispcodec.progress import silent
+from nispcodec.core.atomic_write import write_atomic
+from nispcodec.core.network import Network
+from nispcodec.core.progress import silent
+from nispcodec.dataset.recipes import SKIN, TrainingSets
+from nispcodec.dataset.sample_set import SampleSet
+from nispcodec.dataset.sampler import BETA, Sampler
+from nispcodec.infer.evaluate import evaluate
+from nispcodec.io.load import load_mesh
+from nispcodec.train.backend.torch.losses import uv_loss
+from nispcodec.train.loop import train
+from nispcodec.train.lottery_ticket import tickets
+from nispcodec.train.presets import paper_tasks
+from nispcodec.train.prune import STRATEGIES, Mask
+from nispcodec.train.task import Task
 
 RESULTS, FIGURE = "benchmarks/results/pruning.json", "docs/pruning.png"
 ASSETS = ("spot", "chess_king")

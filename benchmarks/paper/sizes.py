@@ -8,7 +8,7 @@ import numpy as np
 
 from benchmarks.codings import COMPONENT, PAPER, PRUNED, UV, measured, pruned, stored
 from benchmarks.paper.row import Comparison
-from nispcodec.network import NetworkSpec
+from nispcodec.core.network import NetworkSpec
 
 TABLE = "Sizes (table 2)"
 UNPRUNED = {"point2component": (COMPONENT, 174.4), "point2UV": (UV, 129.1)}

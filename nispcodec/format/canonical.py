@@ -13,7 +13,7 @@ from typing import Any
 
 import msgpack
 
-from nispcodec.errors import FormatError
+from nispcodec.core.errors import FormatError
 from nispcodec.format.constants import (
     MAX_DEPTH,
     MAX_ITEMS,

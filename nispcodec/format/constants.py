@@ -1,7 +1,7 @@
 """Names and numbers of the container, version 1: the same as in `format_spec.md`.
 
-Enumerations are the tuples here and those of `nispcodec.asset` and `nispcodec.network`; on disk a
-member is its position counted from 1, and 0 is reserved.
+Enumerations are the tuples here and those of `nispcodec.core.asset` and `nispcodec.core.network`;
+on disk a member is its position counted from 1, and 0 is reserved.
 """
 
 from __future__ import annotations

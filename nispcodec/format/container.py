@@ -10,7 +10,7 @@ from zlib import crc32
 
 import zstandard
 
-from nispcodec.errors import FormatError
+from nispcodec.core.errors import FormatError
 from nispcodec.format.constants import (
     CRITICAL,
     ENTRY_SIZE,

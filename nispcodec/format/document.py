@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from nispcodec.asset import Texture
-from nispcodec.document import Document
-from nispcodec.errors import FormatError
+from nispcodec.core.asset import Texture
+from nispcodec.core.document import Document
+from nispcodec.core.errors import FormatError
 from nispcodec.format import metadata, weights
 from nispcodec.format.constants import META, NETS, SECTIONS, TXTR
 from nispcodec.format.container import Entry, content, read_container, write_container

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from nispcodec.document import Document
-from nispcodec.errors import FormatError, NispError
+from nispcodec.core.document import Document
+from nispcodec.core.errors import FormatError, NispError
 from nispcodec.format.document import unpack
 
 

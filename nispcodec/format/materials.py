@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-from nispcodec.asset import (
+from nispcodec.core.asset import (
     ALPHA_MODES,
     FILTERS,
     MIME_TYPES,
@@ -15,7 +15,7 @@ from nispcodec.asset import (
     Texture,
     TextureMap,
 )
-from nispcodec.errors import FormatError
+from nispcodec.core.errors import FormatError
 from nispcodec.format.constants import ENDINGS, MAX_FILE, MAX_ITEMS, META
 from nispcodec.format.record import Record, check_file_name, check_text, number, sparse
 

@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from nispcodec.errors import FormatError
+from nispcodec.core.errors import FormatError
 from nispcodec.format.constants import MEASURES, META, PRESETS
 
 Scalar = str | int | float | bool

@@ -8,8 +8,9 @@ from typing import Any
 
 import numpy as np
 
-from nispcodec.asset import Material
-from nispcodec.document import ChartTable, Document, Frame
+from nispcodec.core.asset import Material
+from nispcodec.core.document import ChartTable, Document, Frame
+from nispcodec.core.network import MAX_CHARTS, NetworkSpec
 from nispcodec.format import canonical, measures, topology
 from nispcodec.format.constants import META
 from nispcodec.format.materials import (
@@ -19,7 +20,6 @@ from nispcodec.format.materials import (
     encode_textures,
 )
 from nispcodec.format.record import Record, sparse
-from nispcodec.network import MAX_CHARTS, NetworkSpec
 
 _UV_MAP = (0.0, 0.0, 1.0, 1.0)
 

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any, TypeVar
 
-from nispcodec.errors import FormatError
+from nispcodec.core.errors import FormatError
 
 T = TypeVar("T")
 

@@ -11,8 +11,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from nispcodec.draw import Integers, told
-from nispcodec.errors import FormatError
+from nispcodec.core.errors import FormatError
+from nispcodec.core.initial_weights import Integers, told
+from nispcodec.core.network import Network, NetworkSpec, Weights
 from nispcodec.format import steps
 from nispcodec.format.codings import coo, csc, csr, dense, dia, entropy
 from nispcodec.format.codings.reader import Reader, varint
@@ -26,7 +27,6 @@ from nispcodec.format.constants import (
 )
 from nispcodec.format.container import pack_content
 from nispcodec.format.tensor import Tensor
-from nispcodec.network import Network, NetworkSpec, Weights
 
 _OWN = {"dense": dense, "coo": coo, "csc": csc, "csr": csr, "dia": dia}
 STREAMED = ("entropy", "drawn")

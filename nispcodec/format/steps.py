@@ -10,7 +10,7 @@ import struct
 import numpy as np
 from numpy.typing import NDArray
 
-from nispcodec.errors import FormatError
+from nispcodec.core.errors import FormatError
 from nispcodec.format.codings import bits
 from nispcodec.format.codings.reader import Reader
 from nispcodec.format.constants import NETS

@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from nispcodec.draw import BITS, Integers, told
+from nispcodec.core.initial_weights import BITS, Integers, told
+from nispcodec.core.network import MAX_OCTAVE
 from nispcodec.format.constants import MAX_SYMBOL
-from nispcodec.network import MAX_OCTAVE
 
 
 @dataclass(frozen=True)
@@ -19,7 +19,7 @@ class Tensor:
     """Its step, if it is quantised; its weights or symbols; the draws it began from.
 
     matrix  (rows, columns) float32 weights, or int32 symbols
-    drawn   (rows, columns) those of `nispcodec.draw`
+    drawn   (rows, columns) those of `nispcodec.core.initial_weights`
     """
 
     path: str

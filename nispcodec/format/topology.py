@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import Any
 
-from nispcodec.errors import FormatError
+from nispcodec.core.errors import FormatError
+from nispcodec.core.network import ACTIVATIONS, CONDITIONINGS, ENCODINGS, OUTPUTS, NetworkSpec
 from nispcodec.format.constants import META, NETWORKS
 from nispcodec.format.record import Record, located, number, sparse
-from nispcodec.network import ACTIVATIONS, CONDITIONINGS, ENCODINGS, OUTPUTS, NetworkSpec
 
 
 def encode(specs: dict[str, NetworkSpec]) -> dict[int, Any]:

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 
-from nispcodec.asset import Texture
-from nispcodec.errors import FormatError, NispError
+from nispcodec.core.asset import Texture
+from nispcodec.core.errors import FormatError, NispError
 from nispcodec.format.constants import TXTR
 from nispcodec.format.document import unpack
 

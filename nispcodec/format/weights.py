@@ -8,14 +8,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from nispcodec.errors import FormatError
+from nispcodec.core.errors import FormatError
+from nispcodec.core.network import Network, NetworkSpec, Weights
 from nispcodec.format import records
 from nispcodec.format.codings import entropy
 from nispcodec.format.codings.reader import Reader
 from nispcodec.format.constants import CODINGS, MAX_SYMBOL, MAX_UNPACKED, MAX_WEIGHTS, NETS
 from nispcodec.format.container import pack_content
 from nispcodec.format.records import STREAMED, Part, Record
-from nispcodec.network import Network, NetworkSpec, Weights
 
 
 def encode(networks: dict[str, Network], coding: str | None) -> bytes:

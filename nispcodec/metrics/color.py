@@ -7,11 +7,11 @@ from functools import reduce
 
 import numpy as np
 
+from nispcodec.core.texture import Image, base_colors
 from nispcodec.metrics.geometry import Matches
 from nispcodec.metrics.psnr import psnr
 from nispcodec.metrics.surface import Surface, SurfacePoints
 from nispcodec.metrics.uv import uv_at
-from nispcodec.texture import Image, base_colors
 
 
 def color_at(surface: Surface, points: SurfacePoints) -> Image:

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from nispcodec.asset import TexturedMesh
-from nispcodec.document import Frame
+from nispcodec.core.asset import TexturedMesh
+from nispcodec.core.document import Frame
 from nispcodec.metrics.charts import Chooser, chart_accuracy
 from nispcodec.metrics.color import color_psnr
 from nispcodec.metrics.geometry import (

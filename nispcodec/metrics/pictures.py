@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from nispcodec.errors import QueryError
+from nispcodec.core.errors import QueryError
 from nispcodec.metrics.psnr import psnr
 
 

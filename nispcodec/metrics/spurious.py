@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from nispcodec.asset import TexturedMesh
+from nispcodec.core.asset import TexturedMesh
 from nispcodec.metrics.surface import Array, Surface, frame_of
 
 FAR = 0.02

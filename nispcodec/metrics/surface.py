@@ -8,10 +8,10 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from nispcodec.asset import TexturedMesh
-from nispcodec.document import Frame
-from nispcodec.errors import MeshError
-from nispcodec.metrics.twins import twins
+from nispcodec.core.asset import TexturedMesh
+from nispcodec.core.document import Frame
+from nispcodec.core.errors import MeshError
+from nispcodec.metrics.opposite_faces import twins
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]

@@ -8,7 +8,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from nispcodec.errors import QueryError
+from nispcodec.core.errors import QueryError
 
 Floats = NDArray[np.float32]
 

@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from nispcodec.errors import QueryError
+from nispcodec.core.errors import QueryError
 from nispcodec.render.fragments import Floats
 from nispcodec.render.picture import Eye, Samples
 

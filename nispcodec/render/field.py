@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from nispcodec.asset import Material, Texture
-from nispcodec.decode.evaluate import gradient
-from nispcodec.decode.model import NispModel
-from nispcodec.document import Frame
+from nispcodec.core.asset import Material, Texture
+from nispcodec.core.document import Frame
+from nispcodec.infer.evaluate import gradient
+from nispcodec.model import NispModel
 from nispcodec.render.fragments import Cast, Floats, Fragments, Indices, Integers
 from nispcodec.render.march import March
 from nispcodec.render.space import bounding_space

@@ -8,8 +8,8 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from nispcodec.asset import Material, Texture
-from nispcodec.document import Frame
+from nispcodec.core.asset import Material, Texture
+from nispcodec.core.document import Frame
 
 Floats = NDArray[np.float32]
 Integers = NDArray[np.int32]

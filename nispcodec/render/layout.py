@@ -6,12 +6,12 @@ from dataclasses import replace
 
 import numpy as np
 
-from nispcodec.asset import TexturedMesh
-from nispcodec.decode.model import NispModel
-from nispcodec.document import Frame
+from nispcodec.core.asset import TexturedMesh
+from nispcodec.core.document import Frame
 from nispcodec.metrics.sides import sides_of
 from nispcodec.metrics.surface import Array, Surface, SurfacePoints
 from nispcodec.metrics.uv import uv_at
+from nispcodec.model import NispModel
 from nispcodec.render.fragments import Floats
 
 POINTS = 150_000

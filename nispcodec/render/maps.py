@@ -6,9 +6,9 @@ from threading import Lock
 
 import numpy as np
 
-from nispcodec.asset import SRGB_SLOTS, Material, Texture
+from nispcodec.core.asset import SRGB_SLOTS, Material, Texture
+from nispcodec.core.texture import Image, decode_image, sample_texture, srgb_to_linear
 from nispcodec.render.fragments import Floats, Fragments
-from nispcodec.texture import Image, decode_image, sample_texture, srgb_to_linear
 
 
 class Maps:

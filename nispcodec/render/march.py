@@ -12,9 +12,9 @@ from dataclasses import dataclass, fields, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from nispcodec.decode.evaluate import evaluate
-from nispcodec.decode.extract import OUTSIDE
-from nispcodec.network import Network
+from nispcodec.core.network import Network
+from nispcodec.extract.isosurface import OUTSIDE
+from nispcodec.infer.evaluate import evaluate
 from nispcodec.render.fragments import Floats, Indices, Integers
 from nispcodec.render.space import Space
 

@@ -7,12 +7,12 @@ from dataclasses import dataclass, fields
 import numpy as np
 from numpy.typing import NDArray
 
-from nispcodec.decode.cores import cores, on_every_core
+from nispcodec.core.texture import linear_to_srgb
+from nispcodec.infer.parallel import cores, on_every_core
 from nispcodec.render.camera import Camera
 from nispcodec.render.fragments import Floats, Fragments, Integers, Scene
 from nispcodec.render.maps import Maps
 from nispcodec.render.shade import looks, shaded
-from nispcodec.texture import linear_to_srgb
 
 # Rays at a time and core: bounds the memory. Smaller bands cost more calls than they save.
 BAND = 1 << 16

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from nispcodec.asset import Material, Texture, TexturedMesh
-from nispcodec.document import Frame
+from nispcodec.core.asset import Material, Texture, TexturedMesh
+from nispcodec.core.document import Frame
 from nispcodec.metrics.surface import Array, Indices, Surface, SurfacePoints, frame_of
 from nispcodec.metrics.uv import uv_at
 from nispcodec.render.fragments import Cast, Floats, Fragments

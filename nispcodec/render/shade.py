@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from nispcodec.asset import Material
+from nispcodec.core.asset import Material
 from nispcodec.render.fragments import Floats, Fragments
 from nispcodec.render.maps import Maps
 from nispcodec.render.tangents import tangent_frames

@@ -6,12 +6,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from nispcodec.asset import TexturedMesh
-from nispcodec.decode.model import NispModel
+from nispcodec.core.asset import TexturedMesh
+from nispcodec.core.progress import Listener, Progress, silent
 from nispcodec.metrics.compare import Report, compare
 from nispcodec.metrics.pictures import compare_pictures
 from nispcodec.metrics.surface import frame_of
-from nispcodec.progress import Listener, Progress, silent
+from nispcodec.model import NispModel
 from nispcodec.render.camera import Camera, turntable
 from nispcodec.render.difference import SCALE, close_ups, difference, heat
 from nispcodec.render.fragments import Floats, Scene

@@ -14,10 +14,10 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import distance_transform_edt, label, map_coordinates
 
-from nispcodec.decode.evaluate import evaluate, gradient
-from nispcodec.decode.extract import OUTSIDE, extract
-from nispcodec.decode.grid import LIMIT
-from nispcodec.network import Network
+from nispcodec.core.network import Network
+from nispcodec.extract.grid import LIMIT
+from nispcodec.extract.isosurface import OUTSIDE, extract
+from nispcodec.infer.evaluate import evaluate, gradient
 from nispcodec.render.fragments import Floats, Indices
 
 COARSE, HALVINGS = 32, 2
@@ -153,8 +153,8 @@ def _is_surface(network: Network, shell: float, cells: Indices, count: int) -> N
     # Slow to import, and seldom needed.
     from scipy.spatial import KDTree
 
-    from nispcodec.decode.components import spurious
-    from nispcodec.decode.meshing import default_resolution
+    from nispcodec.extract.components import spurious
+    from nispcodec.extract.meshing import default_resolution
 
     surface = extract(network, default_resolution(network, shell))
     unwanted, labels = spurious(network, surface)

@@ -6,9 +6,9 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from nispcodec.asset import TexturedMesh
-from nispcodec.decode.model import NispModel
-from nispcodec.document import Frame
+from nispcodec.core.asset import TexturedMesh
+from nispcodec.core.document import Frame
+from nispcodec.model import NispModel
 from nispcodec.render.camera import Camera
 from nispcodec.render.field import FieldScene
 from nispcodec.render.fragments import Floats, Scene

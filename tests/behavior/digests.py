@@ -20,13 +20,13 @@ import numpy as np
 
 import nispcodec
 from nispcodec import EncodeConfig, TexturedMesh
-from nispcodec.decode.writers.glb import glb_bytes
-from nispcodec.fit import presets
-from nispcodec.fit.presets import Effort
+from nispcodec.dataset import recipes as training
 from nispcodec.format import pack
-from nispcodec.mesh import training
-from nispcodec.mesh.procedural import sample_asset
-from tests.mesh.shapes import box_asset, hemisphere, soup
+from nispcodec.io.write.glb import glb_bytes
+from nispcodec.procedural.mug import sample_asset
+from nispcodec.train import presets
+from nispcodec.train.presets import Effort
+from tests.geometry.shapes import box_asset, hemisphere, soup
 
 EXPECTED = Path(__file__).with_name("expected.json")
 CONFORMANCE = Path(__file__).parent.parent / "conformance"

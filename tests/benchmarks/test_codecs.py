@@ -13,12 +13,12 @@ from benchmarks.codecs import CODECS, Setting, Unavailable, codec, gltfpack
 from benchmarks.corners import corners_of
 from benchmarks.simplify import simplified
 from benchmarks.source import Source
-from nispcodec.asset import TexturedMesh
-from nispcodec.decode.model import NispModel
-from nispcodec.decode.writers import write_mesh
-from nispcodec.encoder import PRESETS, EncodeConfig
+from nispcodec.core.asset import TexturedMesh
+from nispcodec.encode.recipe import PRESETS, EncodeConfig
 from nispcodec.format import pack
-from nispcodec.mesh.procedural import sample_asset
+from nispcodec.io.save import write_mesh
+from nispcodec.model import NispModel
+from nispcodec.procedural.mug import sample_asset
 from tests.tiny import document
 
 

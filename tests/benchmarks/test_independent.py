@@ -14,7 +14,7 @@ pytest.importorskip("DracoPy", reason="peers: extra `bench`")
 
 from benchmarks import cross_check, fetch_assets
 from benchmarks.crossover import subdivided
-from nispcodec.mesh.load import load_mesh
+from nispcodec.io.load import load_mesh
 from nispcodec.metrics.compare import compare
 from tests.metrics.shapes import joined, moved, plane, sphere
 

@@ -6,8 +6,8 @@ import pytest
 from benchmarks.paper_pictures import SIZE, _of_size, sight, without_charts
 from benchmarks.pictures import likeness, silhouette, targets
 from benchmarks.target import Target
-from nispcodec.decode.model import NispModel
-from nispcodec.network import NetworkSpec
+from nispcodec.core.network import NetworkSpec
+from nispcodec.model import NispModel
 from nispcodec.render.camera import Camera
 from nispcodec.render.views import scene_of
 from tests import tiny

@@ -5,12 +5,12 @@ from __future__ import annotations
 import numpy as np
 
 from benchmarks.rounding_loss import floats
-from nispcodec.fit import parallel
-from nispcodec.fit.losses import CURVATURES, distance_error, relative_distance_loss
-from nispcodec.fit.task import Rounding, Schedule, Task
-from nispcodec.network import Network, NetworkSpec
-from nispcodec.progress import silent
-from tests.fit.test_train import ball_samples
+from nispcodec.core.network import Network, NetworkSpec
+from nispcodec.core.progress import silent
+from nispcodec.train import workers as parallel
+from nispcodec.train.backend.torch.losses import CURVATURES, distance_error, relative_distance_loss
+from nispcodec.train.task import Rounding, Schedule, Task
+from tests.train.test_loop import ball_samples
 
 
 def fitted() -> Network:

@@ -10,9 +10,9 @@ from numpy.typing import NDArray
 
 from benchmarks.decoder import naive
 from benchmarks.soundness import soundness
-from nispcodec.asset import TexturedMesh
-from nispcodec.decode.meshing import textured_mesh
-from nispcodec.document import Document
+from nispcodec.core.asset import TexturedMesh
+from nispcodec.core.document import Document
+from nispcodec.extract.meshing import textured_mesh
 from tests import tiny
 
 WRONG = ("cracks", "crowded_edges", "duplicate_vertices", "two_chart_triangles")

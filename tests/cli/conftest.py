@@ -6,8 +6,8 @@ import pytest
 from click.testing import CliRunner, Result
 from nispcodec_cli import main
 
-from nispcodec.decode.writers import write_mesh
 from nispcodec.format import pack
+from nispcodec.io.save import write_mesh
 from tests import tiny
 from tests.metrics.shapes import sphere
 

@@ -11,9 +11,9 @@ from click.testing import CliRunner
 from nispcodec_cli import COMMANDS, decode
 from nispcodec_cli import main as group
 
-from nispcodec.decode.model import NispModel
-from nispcodec.decode.writers import SUFFIXES
-from nispcodec.mesh.load import load_mesh
+from nispcodec.io.load import load_mesh
+from nispcodec.io.save import SUFFIXES
+from nispcodec.model import NispModel
 from tests import tiny
 from tests.cli.conftest import nisp
 

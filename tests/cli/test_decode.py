@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 import trimesh
 
-from nispcodec.mesh.load import load_mesh
+from nispcodec.io.load import load_mesh
 from tests.cli.conftest import nisp
 
 

@@ -8,11 +8,11 @@ from nispcodec_cli import encode, pruning
 from nispcodec_cli.progress import Bars, Lines, described, duration
 
 import nispcodec
-from nispcodec.decode.model import NispModel
-from nispcodec.encoder import PRESETS
-from nispcodec.errors import FitError
-from nispcodec.fit.prune import STRATEGIES
-from nispcodec.progress import Progress
+from nispcodec.core.errors import FitError
+from nispcodec.core.progress import Progress
+from nispcodec.encode.recipe import PRESETS
+from nispcodec.model import NispModel
+from nispcodec.train.prune import STRATEGIES
 from tests import tiny
 from tests.cli.conftest import nisp
 

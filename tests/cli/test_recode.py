@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from nispcodec_cli import recode
 
-from nispcodec.decode.model import NispModel
-from nispcodec.document import Document
+from nispcodec.core.document import Document
 from nispcodec.format import constants, unpack
+from nispcodec.model import NispModel
 from tests.cli.conftest import nisp
 
 

@@ -11,11 +11,11 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
 
-from nispcodec.asset import SLOTS, WRAPS, Material, Texture, TextureMap
-from nispcodec.document import ChartTable, Document, Frame
-from nispcodec.draw import draws, told
+from nispcodec.core.asset import SLOTS, WRAPS, Material, Texture, TextureMap
+from nispcodec.core.document import ChartTable, Document, Frame
+from nispcodec.core.initial_weights import draws, told
+from nispcodec.core.network import Network, NetworkSpec
 from nispcodec.format import pack
-from nispcodec.network import Network, NetworkSpec
 from tests.conformance.builder import container
 from tests.conformance.malformed import rows
 

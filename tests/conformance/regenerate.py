@@ -13,11 +13,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from nispcodec.decode.evaluate import evaluate
-from nispcodec.decode.model import NispModel
-from nispcodec.document import Frame
+from nispcodec.core.document import Frame
+from nispcodec.core.texture import decode_image
 from nispcodec.format import unpack
-from nispcodec.texture import decode_image
+from nispcodec.infer.evaluate import evaluate
+from nispcodec.model import NispModel
 from tests.conformance.features import features
 from tests.conformance.malformed import all_malformed
 

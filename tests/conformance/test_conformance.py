@@ -9,10 +9,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from nispcodec.decode.model import NispModel
-from nispcodec.errors import FormatError
+from nispcodec.core.errors import FormatError
 from nispcodec.format import pack, unpack
 from nispcodec.format.constants import CODINGS
+from nispcodec.model import NispModel
 from tests.conformance.independent import Reader
 from tests.format.documents import assert_same
 

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 from hypothesis import strategies as st
 
-from nispcodec.asset import (
+from nispcodec.core.asset import (
     ALPHA_MODES,
     FILTERS,
     MIME_TYPES,
@@ -17,8 +17,8 @@ from nispcodec.asset import (
     Texture,
     TextureMap,
 )
-from nispcodec.document import ChartTable, Document, Frame
-from nispcodec.network import ACTIVATIONS, CONDITIONINGS, OUTPUTS, Network, NetworkSpec
+from nispcodec.core.document import ChartTable, Document, Frame
+from nispcodec.core.network import ACTIVATIONS, CONDITIONINGS, OUTPUTS, Network, NetworkSpec
 
 
 def network(spec: NetworkSpec, seed: int = 0, scale: float = 1.0) -> Network:

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from nispcodec.asset import Material
-from nispcodec.document import ChartTable, Document, Frame
-from nispcodec.network import Network, NetworkSpec
+from nispcodec.core.asset import Material
+from nispcodec.core.document import ChartTable, Document, Frame
+from nispcodec.core.network import Network, NetworkSpec
 
 
 def slab() -> Document:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from nispcodec.errors import FormatError
+from nispcodec.core.errors import FormatError
 from nispcodec.format import inspect, unpack
 from tests.conformance.builder import container
 from tests.conformance.malformed import Malformed, all_malformed, rows

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from nispcodec import encoder
-from nispcodec.errors import FormatError
+from nispcodec.core.errors import FormatError
+from nispcodec.encode import recipe as encoder
 from nispcodec.format import canonical, measures
 from nispcodec.format.constants import PRESETS
 

@@ -9,7 +9,7 @@ import msgpack
 import numpy as np
 import pytest
 
-from nispcodec.errors import FormatError
+from nispcodec.core.errors import FormatError
 from nispcodec.format import unpack
 from nispcodec.format.codings import entropy
 from nispcodec.format.constants import MAX_MEMORY

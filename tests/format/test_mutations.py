@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from nispcodec.errors import FormatError
+from nispcodec.core.errors import FormatError
 from nispcodec.format import pack, unpack
 from nispcodec.format.constants import CODINGS
 from nispcodec.format.container import content, read_container

@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 
-from nispcodec.asset import Material, Texture, TextureMap
-from nispcodec.document import ChartTable, Document, Frame
-from nispcodec.errors import FormatError
+from nispcodec.core.asset import Material, Texture, TextureMap
+from nispcodec.core.document import ChartTable, Document, Frame
+from nispcodec.core.errors import FormatError
+from nispcodec.core.network import NetworkSpec
 from nispcodec.format import inspect, metadata, pack, unpack
 from nispcodec.format.constants import CODINGS
-from nispcodec.network import NetworkSpec
 from tests.format.documents import assert_same, documents, full, network, quantised, tiny
 from tests.format.test_measures import ENCODERS
 

@@ -8,14 +8,14 @@ from collections import defaultdict
 import numpy as np
 import pytest
 
-from nispcodec import asset, network
-from nispcodec.decode.evaluate import evaluate
+from nispcodec.core import asset, network
+from nispcodec.core.texture import sample_texture
 from nispcodec.format import constants, inspect, pack, steps, unpack
 from nispcodec.format.codings import curve
 from nispcodec.format.codings.reader import Reader
 from nispcodec.format.container import content, read_container
 from nispcodec.format.record import Record
-from nispcodec.texture import sample_texture
+from nispcodec.infer.evaluate import evaluate
 from tests.format import spec
 from tests.format.documents import full
 from tests.format.golden import slab

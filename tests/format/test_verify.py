@@ -8,11 +8,11 @@ import zlib
 
 import pytest
 
-from nispcodec.asset import Texture
-from nispcodec.errors import MeshError
+from nispcodec.core.asset import Texture
+from nispcodec.core.errors import MeshError
+from nispcodec.core.texture import decode_image
 from nispcodec.format import pack
 from nispcodec.format.verify import verify
-from nispcodec.texture import decode_image
 from tests.format.documents import full, tiny
 
 PNG = b"\x89PNG\r\n\x1a\n and so on"

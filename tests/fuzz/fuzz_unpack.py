@@ -19,8 +19,8 @@ from pathlib import Path
 
 import atheris
 
-with atheris.instrument_imports(include=["nispcodec.format", "nispcodec.document"]):
-    from nispcodec.errors import FormatError
+with atheris.instrument_imports(include=["nispcodec.format", "nispcodec.core.document"]):
+    from nispcodec.core.errors import FormatError
     from nispcodec.format import unpack
     from nispcodec.format.constants import MAX_MEMORY
 

@@ -9,7 +9,7 @@ import numpy as np
 import PIL.Image
 import trimesh
 
-from nispcodec.asset import Material, Texture, TexturedMesh, TextureMap
+from nispcodec.core.asset import Material, Texture, TexturedMesh, TextureMap
 
 
 def plane(height: float = 0.0, cells: int = 8, name: str = "plane") -> TexturedMesh:

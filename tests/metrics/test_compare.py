@@ -6,8 +6,8 @@ import json
 import numpy as np
 import pytest
 
-from nispcodec.asset import TexturedMesh
-from nispcodec.errors import MeshError
+from nispcodec.core.asset import TexturedMesh
+from nispcodec.core.errors import MeshError
 from nispcodec.metrics.compare import compare
 from nispcodec.metrics.psnr import CEILING
 from tests.metrics.shapes import joined, moved, plane, sphere, textured

@@ -5,7 +5,7 @@ import dataclasses
 import numpy as np
 import pytest
 
-from nispcodec.errors import QueryError
+from nispcodec.core.errors import QueryError
 from nispcodec.metrics.charts import chart_accuracy
 from nispcodec.metrics.color import color_at
 from nispcodec.metrics.parameterisation import distortion_summary, triangle_distortions

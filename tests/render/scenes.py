@@ -8,8 +8,8 @@ from io import BytesIO
 import numpy as np
 import PIL.Image
 
-from nispcodec.asset import Material, Texture, TexturedMesh, TextureMap
-from nispcodec.document import Frame
+from nispcodec.core.asset import Material, Texture, TexturedMesh, TextureMap
+from nispcodec.core.document import Frame
 from tests.metrics.shapes import plane
 
 UNIT = Frame((0.5, 0.5, 0.0), 1.0)

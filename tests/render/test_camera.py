@@ -3,7 +3,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from nispcodec.errors import QueryError
+from nispcodec.core.errors import QueryError
 from nispcodec.render.camera import NAMED, Camera, turntable, view
 
 MIDDLE = np.array([0.5])

@@ -5,11 +5,11 @@ import dataclasses
 import numpy as np
 import pytest
 
-from nispcodec.asset import Material
-from nispcodec.decode.model import NispModel
-from nispcodec.document import ChartTable
-from nispcodec.errors import QueryError
+from nispcodec.core.asset import Material
+from nispcodec.core.document import ChartTable
+from nispcodec.core.errors import QueryError
 from nispcodec.metrics.pictures import compare_pictures
+from nispcodec.model import NispModel
 from nispcodec.render.camera import Camera, turntable
 from nispcodec.render.channels import CHANNELS, channel_picture
 from nispcodec.render.field import FieldScene

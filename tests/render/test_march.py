@@ -3,7 +3,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from nispcodec.network import Network
+from nispcodec.core.network import Network
 from nispcodec.render.camera import Camera
 from nispcodec.render.march import EPSILON, March
 from nispcodec.render.space import Space, bounding_space
@@ -43,7 +43,7 @@ def test_rays_hit_a_sphere_where_it_is(ball: tuple[Network, Space]) -> None:
 
 
 def test_hits_lie_on_the_fields_own_surface(ball: tuple[Network, Space]) -> None:
-    from nispcodec.decode.evaluate import evaluate
+    from nispcodec.infer.evaluate import evaluate
 
     origins, directions = rays(Camera())
     found = March(*ball, origins, directions).run()

@@ -5,7 +5,7 @@ import dataclasses
 import numpy as np
 import pytest
 
-from nispcodec.asset import Material
+from nispcodec.core.asset import Material
 from nispcodec.metrics.surface import Surface, frame_of
 from nispcodec.render.camera import Camera
 from nispcodec.render.normals import corner_normals

@@ -5,11 +5,11 @@ import dataclasses
 import numpy as np
 import pytest
 
-from nispcodec.asset import TexturedMesh
-from nispcodec.decode.model import NispModel
-from nispcodec.document import Frame
+from nispcodec.core.asset import TexturedMesh
+from nispcodec.core.document import Frame
+from nispcodec.core.progress import Progress
 from nispcodec.metrics.surface import frame_of
-from nispcodec.progress import Progress
+from nispcodec.model import NispModel
 from nispcodec.render.camera import turntable
 from nispcodec.render.difference import close_ups
 from nispcodec.render.layout import layouts

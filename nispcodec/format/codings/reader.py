@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from nispcodec.errors import FormatError
+from nispcodec.core.errors import FormatError
 
 
 class Reader:

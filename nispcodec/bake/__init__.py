@@ -1,0 +1,1 @@
+"""New atlases, and textures for them."""

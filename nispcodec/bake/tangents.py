@@ -1,0 +1,55 @@
+"""Which way the UVs of a mesh grow on its surface, as renderers see it: smooth across faces."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from nispcodec.core.asset import TexturedMesh
+from nispcodec.io.write.vertices import vertex_normals
+
+Doubles = NDArray[np.float64]
+Integers = NDArray[np.int32]
+
+
+@dataclass(frozen=True)
+class Frames:
+    """Unit directions (n, 3) on the surface, square to the smooth normal and to each other.
+
+    tangents: u grows; bitangents: v grows, v upwards in the image as in OBJ.
+    """
+
+    tangents: Doubles
+    bitangents: Doubles
+
+
+def frames_at(mesh: TexturedMesh, faces: Integers, weights: Doubles) -> Frames:
+    """The frames at barycentric `weights` (n, 3) in `faces` (n,), all of which have UVs.
+
+    Directions of u are averaged over the faces that share a UV and made square to the averaged
+    normals, much as MikkTSpace does.
+    """
+    along, mirrored = _directions(mesh)
+    sums = np.zeros((len(mesh.uvs), 3))
+    np.add.at(sums, mesh.uv_faces.ravel(), np.repeat(along, 3, axis=0))
+    normals = vertex_normals(mesh).astype(np.float64)[mesh.faces[faces]]
+    normal = _unit(np.einsum("nc,ncd->nd", weights, normals))
+    tangent = np.einsum("nc,ncd->nd", weights, sums[mesh.uv_faces[faces]])
+    tangent = _unit(tangent - (tangent * normal).sum(axis=1, keepdims=True) * normal)
+    return Frames(tangent, np.cross(normal, tangent) * mirrored[faces][:, None])
+
+
+def _directions(mesh: TexturedMesh) -> tuple[Doubles, Doubles]:
+    """Unit direction of growing u on each face (m, 3); -1 where the face is mirrored, else 1."""
+    a, b, c = mesh.corners.transpose(1, 0, 2)
+    first, second = (mesh.corner_uvs[:, 1:] - mesh.corner_uvs[:, :1]).transpose(1, 0, 2)
+    mirrored = np.where(first[:, 0] * second[:, 1] < second[:, 0] * first[:, 1], -1.0, 1.0)
+    along = (b - a) * second[:, 1:] - (c - a) * first[:, 1:]
+    return _unit(along * mirrored[:, None]), mirrored
+
+
+def _unit(vectors: Doubles) -> Doubles:
+    units: Doubles = vectors / np.maximum(np.linalg.norm(vectors, axis=1, keepdims=True), 1e-300)
+    return units

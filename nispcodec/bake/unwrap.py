@@ -1,0 +1,42 @@
+"""Make an atlas for a mesh that has none."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from nispcodec.core.asset import TexturedMesh
+from nispcodec.core.errors import MeshError
+
+
+def unwrap(mesh: TexturedMesh) -> TexturedMesh:
+    """New UVs in [0, 1] without overlaps, by xatlas; faces, positions and materials stay.
+
+    Whatever UVs there were are replaced, so maps no longer fit and are dropped with a warning.
+    Raises MeshError when the extra `unwrap` is not installed.
+    """
+    try:
+        import xatlas
+    except ImportError as why:
+        raise MeshError(
+            "unwrapping needs xatlas, found none: pip install 'nispcodec[unwrap]'"
+        ) from why
+    # Large or far-away coordinates would not survive float32.
+    center, radius = mesh.positions.mean(axis=0), np.ptp(mesh.positions, axis=0).max() or 1.0
+    moved = ((mesh.positions - center) / radius).astype(np.float32)
+    _, corners, uvs = xatlas.parametrize(moved, mesh.faces.astype(np.uint32))
+    return replace(
+        _without_maps(mesh),
+        uvs=np.asarray(uvs, dtype=np.float64),
+        uv_faces=np.asarray(corners, dtype=np.int32),
+    )
+
+
+def _without_maps(mesh: TexturedMesh) -> TexturedMesh:
+    if not mesh.textures:
+        return mesh
+    names = ", ".join(texture.name for texture in mesh.textures)
+    plain = tuple(replace(material, maps={}) for material in mesh.materials)
+    warning = f"textures fit the old atlas only and are dropped: {names}"
+    return replace(mesh, materials=plain, textures=(), warnings=(*mesh.warnings, warning))

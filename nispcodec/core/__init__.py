@@ -1,0 +1,1 @@
+"""What every part of the package speaks: assets, networks, documents, errors."""

@@ -1,0 +1,139 @@
+"""The textured triangle mesh that goes in and comes out: geometry, materials, textures.
+
+UV coordinates have their origin bottom-left, as in OBJ; readers and writers of other conventions
+convert at the border of the program. Positions are in the world frame, in the units of the file.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from nispcodec.core.errors import MeshError
+
+FloatArray = NDArray[np.float64]
+IndexArray = NDArray[np.int32]
+
+SLOTS = ("base_color", "normal", "metallic_roughness", "occlusion", "emissive")
+WRAPS = ("repeat", "clamp", "mirror")
+FILTERS = ("linear", "nearest")
+ALPHA_MODES = ("opaque", "mask", "blend")
+SRGB_SLOTS = frozenset({"base_color", "emissive"})
+MIME_TYPES = ("image/png", "image/jpeg", "image/webp", "image/avif")
+
+
+@dataclass(frozen=True)
+class Texture:
+    """One image as the bytes of an image file.
+
+    `name` is a bare file name ("wood.png"), `mime` one of `MIME_TYPES`.
+    """
+
+    name: str
+    data: bytes = field(repr=False)
+    mime: str
+
+
+@dataclass(frozen=True)
+class TextureMap:
+    """How a material uses a texture in one slot.
+
+    `texture` indexes the asset's textures; `wrap` is for u and v; `strength` is glTF's normal scale
+    or occlusion strength.
+    """
+
+    texture: int
+    wrap: tuple[str, str] = ("repeat", "repeat")
+    filter: str = "linear"
+    strength: float = 1.0
+
+
+@dataclass(frozen=True)
+class Material:
+    """Metallic-roughness material as in glTF 2.0, factors linear; `maps` goes from slot to map."""
+
+    name: str = "material"
+    base_color: tuple[float, float, float, float] = (1.0, 1.0, 1.0, 1.0)
+    metallic: float = 0.0
+    roughness: float = 1.0
+    emissive: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    alpha_mode: str = "opaque"
+    alpha_cutoff: float = 0.5
+    double_sided: bool = False
+    maps: Mapping[str, TextureMap] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class TexturedMesh:
+    """One asset: triangles with a UV coordinate and a material each corner and face.
+
+    positions      (n, 3) float64, world frame
+    faces          (m, 3) int32, into positions
+    uvs            (t, 2) float64, origin bottom-left, any range
+    uv_faces       (m, 3) int32, into uvs; a face without UV has -1 in all three corners
+    face_materials (m,)   int32, into materials
+    warnings       what the reader had to leave out or guess, one sentence each
+    """
+
+    positions: FloatArray
+    faces: IndexArray
+    uvs: FloatArray
+    uv_faces: IndexArray
+    face_materials: IndexArray
+    materials: tuple[Material, ...] = (Material(),)
+    textures: tuple[Texture, ...] = ()
+    name: str = "mesh"
+    warnings: tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        faces = len(self.faces)
+        _expect("positions", self.positions, (None, 3), np.float64)
+        _expect("faces", self.faces, (None, 3), np.int32)
+        _expect("uvs", self.uvs, (None, 2), np.float64)
+        _expect("uv_faces", self.uv_faces, (faces, 3), np.int32)
+        _expect("face_materials", self.face_materials, (faces,), np.int32)
+        _expect_range("faces", self.faces, 0, len(self.positions))
+        _expect_range("uv_faces", self.uv_faces, -1, len(self.uvs))
+        _expect_range("face_materials", self.face_materials, 0, len(self.materials))
+
+    @property
+    def corners(self) -> FloatArray:
+        """(m, 3, 3) float64: the positions of every face's corners."""
+        return self.positions[self.faces]
+
+    @property
+    def corner_uvs(self) -> FloatArray:
+        """(m, 3, 2) float64: the UVs of every face's corners; zeros where a face has none."""
+        padded = np.vstack([self.uvs, np.zeros((1, 2))])
+        return padded[self.uv_faces]
+
+    @property
+    def has_uv(self) -> NDArray[np.bool_]:
+        """(m,) bool: which faces carry UVs."""
+        return np.asarray((self.uv_faces >= 0).all(axis=1))
+
+
+def _expect(
+    name: str, array: NDArray[np.generic], shape: tuple[int | None, ...], dtype: type
+) -> None:
+    shape_fits = array.ndim == len(shape) and all(
+        want is None or want == got for want, got in zip(shape, array.shape, strict=True)
+    )
+    if not shape_fits or array.dtype != dtype:
+        raise MeshError(
+            f"{name}: expected shape {shape} of {np.dtype(dtype)}, "
+            f"found shape {array.shape} of {array.dtype}"
+        )
+    if dtype is np.float64 and not np.isfinite(array).all():
+        raise MeshError(f"{name}: expected finite numbers, found NaN or infinity")
+
+
+def _expect_range(name: str, indices: IndexArray, low: int, high: int) -> None:
+    if indices.size and (indices.min() < low or indices.max() >= high):
+        raise MeshError(
+            f"{name}: expected indices from {low} to {high - 1}, "
+            f"found {indices.min()} to {indices.max()}"
+        )

@@ -1,0 +1,39 @@
+"""Files are written whole or not at all."""
+
+from __future__ import annotations
+
+import os
+import tempfile
+from pathlib import Path
+
+from nispcodec.core.errors import NispError
+
+
+def write_atomic(path: Path, data: bytes) -> None:
+    """Write to a sibling temporary file, flush it to disk, rename it over `path`.
+
+    Raises NispError, and leaves what was there, when the folder cannot be written.
+    """
+    try:
+        handle, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
+    except OSError as why:
+        raise NispError(f"{path}: cannot be written: {why.strerror}") from why
+    temporary = Path(name)
+    try:
+        with os.fdopen(handle, "wb") as file:
+            file.write(data)
+            file.flush()
+            os.fsync(file.fileno())
+        temporary.chmod(0o666 & ~_umask())
+        temporary.replace(path)
+    except OSError as why:
+        raise NispError(f"{path}: cannot be written: {why.strerror}") from why
+    finally:
+        temporary.unlink(missing_ok=True)
+
+
+def _umask() -> int:
+    """The process's umask, which can only be read by setting it."""
+    mask = os.umask(0)
+    os.umask(mask)
+    return mask

@@ -1,0 +1,141 @@
+"""The content of a `.nisp` file, validated: what the encoder makes and the decoder reads."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from nispcodec.core.asset import Material, Texture
+from nispcodec.core.errors import FormatError
+from nispcodec.core.network import MAX_CHARTS, Network
+
+
+@dataclass(frozen=True)
+class Frame:
+    """From the normalised frame to the world: world = normalised * radius + center."""
+
+    center: tuple[float, float, float]
+    radius: float
+
+    def to_world(self, points: NDArray[np.floating]) -> NDArray[np.float64]:
+        """(n, 3) normalised -> (n, 3) world."""
+        return np.asarray(points, dtype=np.float64) * self.radius + np.asarray(self.center)
+
+    def to_normalised(self, points: NDArray[np.floating]) -> NDArray[np.float64]:
+        """(n, 3) world -> (n, 3) normalised."""
+        return (np.asarray(points, dtype=np.float64) - np.asarray(self.center)) / self.radius
+
+
+@dataclass(frozen=True)
+class ChartTable:
+    """What each of the k charts is, and the affine map from the UV network to the asset's UV.
+
+    materials (k,) int32 into the document's materials; has_uv (k,) bool;
+    asset UV = network UV * uv_scale + uv_offset, per axis. A chart without UV answers (0, 0).
+    With `openings` the last chart is no part of the asset: it is where the SDF closes openings.
+    """
+
+    materials: NDArray[np.int32]
+    has_uv: NDArray[np.bool_]
+    uv_offset: tuple[float, float] = (0.0, 0.0)
+    uv_scale: tuple[float, float] = (1.0, 1.0)
+    openings: bool = False
+
+    def __len__(self) -> int:
+        return len(self.materials)
+
+
+@dataclass(frozen=True)
+class Document:
+    """One decoded container.
+
+    sdf is always there; chart only when there are two charts or more; uv only when some chart has
+    UV. `shell` is the half thickness (normalised frame) given to open sheets, 0 when there are
+    none: then the surface has parts as thin as twice this.
+    `info` holds what was measured and how the file was made: plain str, int, float and bool values.
+    `extra` holds the ancillary sections that this version does not know, by four-character code:
+    they are kept when the document is written again.
+    """
+
+    frame: Frame
+    charts: ChartTable
+    materials: tuple[Material, ...]
+    textures: tuple[Texture, ...]
+    sdf: Network
+    chart: Network | None = None
+    uv: Network | None = None
+    shell: float = 0.0
+    info: Mapping[str, str | int | float | bool] = field(default_factory=dict)
+    extra: Mapping[str, bytes] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        self._check_tables()
+        self._check_maps()
+        self._check_networks()
+
+    def _check_tables(self) -> None:
+        k = len(self.charts)
+        _demand("charts", 1 <= k <= MAX_CHARTS, f"1 to {MAX_CHARTS}", k)
+        _demand("frame", self.frame.radius > 0, "a positive radius", self.frame.radius)
+        _demand("materials", len(self.materials) > 0, "at least one", 0)
+        materials = self.charts.materials
+        _demand(
+            "chart materials",
+            materials.min() >= 0 and materials.max() < len(self.materials),
+            f"0 to {len(self.materials) - 1}",
+            f"{materials.min()} to {materials.max()}",
+        )
+        if self.charts.openings:
+            _demand("openings", k > 1, "two charts or more", k)
+            _demand("openings", not self.charts.has_uv[-1], "a last chart without UV", "UV")
+
+    def _check_maps(self) -> None:
+        for material in self.materials:
+            for slot, used in material.maps.items():
+                _demand(
+                    f"{material.name}.{slot}",
+                    0 <= used.texture < len(self.textures),
+                    f"a texture below {len(self.textures)}",
+                    used.texture,
+                )
+
+    def _check_networks(self) -> None:
+        k = len(self.charts)
+        _demand("sdf outputs", self.sdf.spec.outputs == 1, 1, self.sdf.spec.outputs)
+        _demand(
+            "chart network",
+            (self.chart is not None) == (k > 1),
+            "one for two charts or more",
+            f"{k} charts",
+        )
+        _demand(
+            "uv network",
+            (self.uv is not None) == bool(self.charts.has_uv.any()),
+            "one when a chart has UV",
+            f"{int(self.charts.has_uv.sum())} charts with UV",
+        )
+        if self.chart is not None:
+            _demand("chart outputs", self.chart.spec.outputs == k, k, self.chart.spec.outputs)
+        if self.uv is not None:
+            _demand("uv outputs", self.uv.spec.outputs == 2, 2, self.uv.spec.outputs)
+            conditioned = self.uv.spec.conditioning != "none"
+            _demand(
+                "uv charts",
+                self.uv.spec.charts == (k if conditioned else 0),
+                k,
+                self.uv.spec.charts,
+            )
+
+    @property
+    def networks(self) -> dict[str, Network]:
+        """The networks that are there, by name: sdf, chart, uv."""
+        named = {"sdf": self.sdf, "chart": self.chart, "uv": self.uv}
+        return {name: network for name, network in named.items() if network is not None}
+
+
+def _demand(field_name: str, holds: bool, expected: object, found: object) -> None:
+    if not holds:
+        raise FormatError("document", field_name, expected, found)

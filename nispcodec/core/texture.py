@@ -1,0 +1,196 @@
+"""Textures as arrays: decode an image file's bytes and look colours up by UV.
+
+The one sampler of the package: queries, metrics and pictures must agree on it to the last bit.
+"""
+
+from __future__ import annotations
+
+import io
+import struct
+import warnings
+from collections.abc import Iterable, Sequence
+from dataclasses import replace
+from itertools import count
+from pathlib import PurePath
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from nispcodec.core.asset import Material, Texture
+from nispcodec.core.errors import MeshError
+
+if TYPE_CHECKING:
+    import PIL.Image
+
+Image = NDArray[np.float32]
+Coordinates = NDArray[np.floating]
+
+# What Pillow's readers raise for malformed files.
+_BROKEN = (OSError, ValueError, SyntaxError, EOFError, struct.error)
+
+
+def decode_image(texture: Texture) -> Image:
+    """The texture's pixels: (h, w, 4) float32 in [0, 1], RGBA as stored, top row first.
+
+    Grey, palette and 16-bit images are widened; an image without alpha gets alpha 1.
+    Raises MeshError, naming the texture, for bytes that are no image and for more pixels than
+    Pillow's limit of 89 million.
+    """
+    import PIL.Image
+
+    try:
+        # Pillow's guard against decompression bombs only warns below twice its limit.
+        with (
+            warnings.catch_warnings(action="error", category=PIL.Image.DecompressionBombWarning),
+            PIL.Image.open(io.BytesIO(texture.data)) as image,
+        ):
+            return _to_rgba(image)
+    except (*_BROKEN, PIL.Image.DecompressionBombWarning, PIL.Image.DecompressionBombError) as why:
+        raise MeshError(f"texture {texture.name}: expected an image, found: {why}") from why
+
+
+def reencode(textures: Iterable[Texture], kind: str, quality: int) -> tuple[Texture, ...]:
+    """The same images as other files: `kind` "webp", "avif" or "jpeg", `quality` 1 to 100.
+
+    JPEG holds no transparency: images that have some stay as they are. Names stay different.
+    """
+    again: list[Texture] = []
+    for texture in textures:
+        fresh, taken = _reencoded(texture, kind, quality), {other.name for other in again}
+        path, tries = PurePath(fresh.name), count(2)
+        while fresh.name in taken:
+            fresh = replace(fresh, name=f"{path.stem}-{next(tries)}{path.suffix}")
+        again.append(fresh)
+    return tuple(again)
+
+
+def _reencoded(texture: Texture, kind: str, quality: int) -> Texture:
+    pixels = image_bytes(texture)
+    if kind == "jpeg" and not _is_opaque(pixels):
+        return texture
+    suffix = "jpg" if kind == "jpeg" else kind
+    name = f"{PurePath(texture.name).stem}.{suffix}"
+    return Texture(name, encode_image(pixels, kind, quality), f"image/{kind}")
+
+
+def image_bytes(texture: Texture) -> NDArray[np.uint8]:
+    """As `decode_image`, in 0 to 255."""
+    return np.rint(decode_image(texture) * 255).astype(np.uint8)
+
+
+def encode_image(pixels: NDArray[np.uint8], kind: str, quality: int) -> bytes:
+    """A file of pixels (h, w, 4): `kind` "png", which has no quality, "webp", "avif" or "jpeg"."""
+    import PIL.Image
+
+    file = io.BytesIO()
+    image = PIL.Image.fromarray(pixels[..., :3] if _is_opaque(pixels) else pixels)
+    image.save(file, kind, quality=quality)
+    return file.getvalue()
+
+
+def _is_opaque(pixels: NDArray[np.uint8]) -> bool:
+    return bool((pixels[..., 3] == 255).all())
+
+
+def sample_texture(
+    image: Image,
+    uv: Coordinates,
+    wrap: tuple[str, str] = ("repeat", "repeat"),
+    filter: str = "linear",
+) -> Image:
+    """Colours (n, c) float32 of an (h, w, c) image at (n, 2) finite UVs, origin bottom-left.
+
+    Texel centres lie at half-integers, as in OpenGL and glTF; `wrap` and `filter` are those of
+    `TextureMap`. Never filters between mip levels.
+    """
+    height, width = image.shape[:2]
+    x = np.asarray(uv[:, 0], dtype=np.float64) * width
+    y = (1.0 - np.asarray(uv[:, 1], dtype=np.float64)) * height
+    if filter == "nearest":
+        return image[_texel(np.floor(y), height, wrap[1]), _texel(np.floor(x), width, wrap[0])]
+    left, top = np.floor(x - 0.5), np.floor(y - 0.5)
+    columns = [_texel(left + step, width, wrap[0]) for step in (0, 1)]
+    rows = [_texel(top + step, height, wrap[1]) for step in (0, 1)]
+    right = (x - 0.5 - left).astype(np.float32)[:, None]
+    low = (y - 0.5 - top).astype(np.float32)[:, None]
+    above = _mix(image[rows[0], columns[0]], image[rows[0], columns[1]], right)
+    below = _mix(image[rows[1], columns[0]], image[rows[1], columns[1]], right)
+    return _mix(above, below, low)
+
+
+def base_color(material: Material, image: Image | None, uv: Coordinates) -> Image:
+    """Base colour (n, 4) float32 at (n, 2) UVs: sRGB-encoded RGB and linear alpha, in [0, 1].
+
+    `image` holds the pixels of the material's base-colour map, None when it has none. The factor
+    is linear (glTF 2.0, 3.9.2), so texels are decoded, multiplied and encoded again.
+    """
+    factor = np.asarray(material.base_color, dtype=np.float32)
+    if image is None:
+        return np.tile(_encoded(factor[None]), (len(uv), 1))
+    used = material.maps["base_color"]
+    texels = sample_texture(image, uv, used.wrap, used.filter)
+    if (factor == 1).all():
+        return texels
+    linear = np.concatenate([srgb_to_linear(texels[:, :3]), texels[:, 3:]], axis=1)
+    return _encoded(linear * factor)
+
+
+def base_colors(
+    materials: Sequence[Material],
+    textures: Sequence[Texture],
+    owners: NDArray[np.integer],
+    has_uv: NDArray[np.bool_],
+    uv: Coordinates,
+) -> Image:
+    """Base colours (n, 4) at (n, 2) UVs of the materials `owners` (n,), as `base_color`.
+
+    Where `has_uv` (n,) is False the material shows its factor alone.
+    """
+    colors = np.empty((len(uv), 4), np.float32)
+    for number in np.unique(owners).tolist():
+        used = materials[number].maps.get("base_color")
+        shown = has_uv & (used is not None)
+        for image_shown in np.unique(shown[owners == number]).tolist():
+            chosen = (owners == number) & (shown == image_shown)
+            image = decode_image(textures[used.texture]) if used and image_shown else None
+            colors[chosen] = base_color(materials[number], image, uv[chosen])
+    return colors
+
+
+def srgb_to_linear(values: Image) -> Image:
+    """IEC 61966-2-1 decoding, elementwise, of values in [0, 1]."""
+    curved = ((values + 0.055) / 1.055) ** 2.4
+    return np.where(values <= 0.04045, values / 12.92, curved).astype(np.float32)
+
+
+def linear_to_srgb(values: Image) -> Image:
+    """IEC 61966-2-1 encoding, elementwise, of values in [0, 1]."""
+    curved = 1.055 * np.maximum(values, 0.0031308) ** (1 / 2.4) - 0.055
+    return np.where(values <= 0.0031308, values * 12.92, curved).astype(np.float32)
+
+
+def _to_rgba(image: PIL.Image.Image) -> Image:
+    if image.mode.startswith("I"):  # Pillow clips 16-bit grey to 255 when converting
+        grey = np.asarray(image, dtype=np.float32)[..., None] / np.float32(65535)
+        return np.concatenate([grey, grey, grey, np.ones_like(grey)], axis=2)
+    return np.asarray(image.convert("RGBA"), dtype=np.float32) / np.float32(255)
+
+
+def _encoded(linear: Image) -> Image:
+    clipped = np.clip(linear, 0.0, 1.0)
+    return np.concatenate([linear_to_srgb(clipped[:, :3]), clipped[:, 3:]], axis=1)
+
+
+def _mix(first: Image, second: Image, share: Image) -> Image:
+    return first + (second - first) * share
+
+
+def _texel(index: NDArray[np.float64], size: int, wrap: str) -> NDArray[np.intp]:
+    # Wrapped as floats: a UV far outside [0, 1] would overflow an integer.
+    if wrap == "repeat":
+        index = np.remainder(index, size)
+    elif wrap == "mirror":
+        index = np.remainder(index, 2 * size)
+        index = np.minimum(index, 2 * size - 1 - index)
+    return np.clip(index, 0, size - 1).astype(np.intp)

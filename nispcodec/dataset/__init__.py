@@ -1,0 +1,1 @@
+"""Labeled points to learn from."""

@@ -1,0 +1,1 @@
+"""Changes to an asset or a file that need no training."""

@@ -1,0 +1,45 @@
+"""Textures whose gutters, what lies between the charts of the atlas, have no colour of their own.
+
+The seams and UVs of a decoded surface are a little off: along a seam it shows some of the gutter.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from nispcodec.core.asset import FloatArray, Texture, TexturedMesh
+from nispcodec.core.raster import coverage, padded
+from nispcodec.core.texture import encode_image, image_bytes
+
+EDGE = 1e-6
+"""UVs that leave the image by so little do not."""
+
+
+def with_padded_gutters(mesh: TexturedMesh, quality: int) -> tuple[Texture, ...]:
+    """The mesh's textures with the nearest used texel's colour where no face lies.
+
+    Formats and names stay; `quality`, 1 to 100, is for those that lose something. An image that no
+    face uses, or that one repeats, stays as it is.
+    """
+    return tuple(_padded(mesh, number, quality) for number in range(len(mesh.textures)))
+
+
+def _padded(mesh: TexturedMesh, number: int, quality: int) -> Texture:
+    texture, uvs = mesh.textures[number], _uvs(mesh, number)
+    if not len(uvs) or uvs.min() < -EDGE or uvs.max() > 1 + EDGE:
+        return texture
+    pixels = image_bytes(texture)
+    image = padded(pixels, coverage(uvs, *pixels.shape[:2]))
+    return replace(texture, data=encode_image(image, texture.mime.split("/")[1], quality))
+
+
+def _uvs(mesh: TexturedMesh, number: int) -> FloatArray:
+    """(f, 3, 2): UVs of the faces that show the image, where it repeats in its first repetition."""
+    uses = [[m for m in each.maps.values() if m.texture == number] for each in mesh.materials]
+    shown = np.array([bool(each) for each in uses], np.bool_)
+    uvs = mesh.corner_uvs[shown[mesh.face_materials] & mesh.has_uv]
+    if all(used.wrap == ("repeat", "repeat") for each in uses for used in each):
+        uvs = uvs - np.floor(uvs.min(axis=1, keepdims=True) + EDGE)
+    return uvs

@@ -1,0 +1,130 @@
+"""Taking sheets of a surface apart that touch along edges or in vertices.
+
+Edge collapses may close a thin tunnel or flatten a thin tube; four faces then meet at one edge.
+Such an edge becomes two, each with the two faces that bound the same solid part.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
+
+from nispcodec.extract.isosurface import Surface
+
+# How far the copies of a vertex draw back to their own faces, as a share of these faces' size.
+RETREAT = 1e-3
+
+Faces = NDArray[np.int32]
+Indices = NDArray[np.int64]
+Sheets = NDArray[np.int32]
+Twins = tuple[Indices, Indices]
+
+
+def manifold(surface: Surface) -> Surface:
+    """The closed, oriented surface, every edge with two faces and one fan of faces at every vertex.
+
+    A vertex gets one copy for each sheet that passes through it. Two vertices that are joined by
+    two edges, as across a tunnel pinched shut, get a vertex in the middle of each.
+    """
+    twins = _twins(surface)
+    apart = _apart(surface, twins)
+    return _halved(apart, _doubled(apart.faces, twins))
+
+
+def _apart(surface: Surface, twins: Twins) -> Surface:
+    keys = surface.faces.ravel().astype(np.int64) << 32 | _sheets(twins)
+    names, copies = np.unique(keys, return_inverse=True)
+    origins, faces = names >> 32, copies.reshape(-1, 3).astype(np.int32)
+    positions = surface.positions[origins]
+    shared = np.bincount(origins)[origins] > 1
+    sums = np.zeros(positions.shape)
+    np.add.at(sums, faces.ravel(), np.repeat(positions[faces].mean(axis=1), 3, axis=0))
+    centres = sums / np.bincount(faces.ravel())[:, None]
+    drawn = np.where(shared[:, None], positions + RETREAT * (centres - positions), positions)
+    return Surface(drawn.astype(np.float32), faces, surface.cell)
+
+
+def _sheets(twins: Twins) -> Sheets:
+    """The sheet of each corner (3m,): corners of one vertex that are joined across edges."""
+    one, other = twins
+    count = 2 * len(one)
+    # Half-edge h starts at corner h and ends at the face's following corner.
+    after = np.arange(count).reshape(-1, 3)[:, [1, 2, 0]].ravel()
+    rows, columns = np.concatenate([one, after[one]]), np.concatenate([after[other], other])
+    graph = coo_array((np.ones(len(rows), np.bool_), (rows, columns)), shape=(count, count))
+    sheets: Sheets = connected_components(graph, directed=False)[1]
+    return sheets
+
+
+def _doubled(faces: Faces, twins: Twins) -> Indices:
+    """Twins (t, 2), half-edges, that run between the same two vertices as others."""
+    starts, ends = faces.ravel().astype(np.int64), np.roll(faces, -1, axis=1).ravel()
+    keys = starts << 32 | ends
+    _, edge, counts = np.unique(keys[twins[0]], return_inverse=True, return_counts=True)
+    return np.stack(twins, axis=1)[counts[edge] > 1]
+
+
+def _halved(surface: Surface, twins: Indices) -> Surface:
+    """The surface with a new vertex in the middle of each pair of half-edges (t, 2)."""
+    first = len(surface.positions)
+    middles = {half: first + row for row, pair in enumerate(twins.tolist()) for half in pair}
+    touched = np.unique(twins // 3)
+    pieces = [piece for face in touched.tolist() for piece in _fan(surface.faces, face, middles)]
+    faces = np.vstack([np.delete(surface.faces, touched, axis=0), *pieces]).astype(np.int32)
+    corners = surface.positions[surface.faces[twins // 3]]
+    ends = np.stack([corners[:, 0][np.arange(len(twins)), (twins[:, 0] + i) % 3] for i in (0, 1)])
+    middle, centres = ends.mean(axis=0), corners.mean(axis=(1, 2))
+    new = (middle + RETREAT * (centres - middle)).astype(np.float32)
+    return Surface(np.vstack([surface.positions, new]), faces, surface.cell)
+
+
+def _fan(faces: Faces, face: int, middles: dict[int, int]) -> list[list[int]]:
+    """The triangles of a face with new vertices on some sides, round one of these."""
+    loop = []
+    for side in range(3):
+        loop.append(int(faces[face, side]))
+        if 3 * face + side in middles:
+            loop.append(middles[3 * face + side])
+            start = len(loop) - 1
+    turned = loop[start:] + loop[:start]
+    return [[turned[0], turned[i], turned[i + 1]] for i in range(1, len(turned) - 1)]
+
+
+def _twins(surface: Surface) -> Twins:
+    """Every half-edge that runs from a lower to a higher vertex, and the half-edge it joins.
+
+    Where several faces run up an edge, the first of them joins the first face downwards that is met
+    on turning through the solid behind it, and so on round the edge.
+    """
+    starts = surface.faces.ravel().astype(np.int64)
+    ends = np.roll(surface.faces, -1, axis=1).ravel()
+    down = starts > ends
+    keys = np.minimum(starts, ends) << 32 | np.maximum(starts, ends)
+    order = np.lexsort([_turns(surface, keys, down), keys, down])
+    up, joined = np.split(order, 2)
+    return up, joined
+
+
+def _turns(surface: Surface, keys: Indices, down: NDArray[np.bool_]) -> NDArray[np.float64]:
+    """How far (3m,) each half-edge's face is turned round its edge from the edge's first face.
+
+    Radians in [0, 2 pi), through the solid first; 0 where an edge has but two faces.
+    """
+    edges, edge, counts = np.unique(keys, return_inverse=True, return_counts=True)
+    crowded = np.flatnonzero(counts[edge] > 2)
+    positions = surface.positions.astype(np.float64)
+    start, end = positions[keys[crowded] >> 32], positions[keys[crowded] & 0xFFFFFFFF]
+    axis = (end - start) / np.linalg.norm(end - start, axis=1, keepdims=True)
+    outwards = positions[surface.faces[crowded // 3, (crowded + 2) % 3]] - start
+    rising = np.flatnonzero(~down[crowded])
+    first = np.zeros(len(edges), np.int64)
+    first[edge[crowded[rising[::-1]]]] = rising[::-1]
+    right = np.cross(axis, np.cross(outwards, axis))[first[edge[crowded]]]
+    ahead = np.cross(right, axis)
+    dots = [(outwards * side).sum(axis=1) for side in (ahead, right)]
+    turns = np.zeros(len(keys))
+    # Rounding must not turn the first face by a whole turn.
+    turns[crowded] = (np.arctan2(*dots) + 1e-9) % (2 * np.pi)
+    return turns

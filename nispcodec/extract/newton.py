@@ -1,0 +1,43 @@
+"""Moving points onto the zero set of the SDF."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from nispcodec.core.network import Network
+from nispcodec.extract.grid import together
+from nispcodec.infer.evaluate import evaluate, gradient
+from nispcodec.infer.parallel import on_every_core
+
+Floats = NDArray[np.float32]
+
+
+def onto_surface(network: Network, points: Floats, reach: float, steps: int) -> Floats:
+    """Points (n, 3) float32, normalised frame, after Newton steps along the field's gradient.
+
+    The gradient is taken once, at the start: the points are near the surface already. A step is
+    taken only where it brings the field nearer to 0, and no point moves farther than `reach` along
+    an axis: where the field is no distance field, points stay where they are.
+    """
+    result = np.empty_like(points)
+
+    def move(part: slice) -> None:
+        result[part] = _moved(network, points[part], reach, steps)
+
+    on_every_core(move, together(len(points)))
+    return result
+
+
+def _moved(network: Network, points: Floats, reach: float, steps: int) -> Floats:
+    values, slopes = gradient(network, points)
+    steepness = (slopes * slopes).sum(axis=1, keepdims=True)
+    direction = slopes / np.maximum(steepness, np.float32(1e-6))
+    moved = points
+    for _ in range(steps):
+        trial = points + np.clip(moved - values[:, None] * direction - points, -reach, reach)
+        trial_values = evaluate(network, trial)[:, 0]
+        better = np.abs(trial_values) < np.abs(values)
+        moved = np.where(better[:, None], trial, moved)
+        values = np.where(better, trial_values, values)
+    return moved

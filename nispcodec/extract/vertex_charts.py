@@ -1,0 +1,56 @@
+"""Which chart each vertex of an extracted surface lies on."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
+
+from nispcodec.core.network import Network
+from nispcodec.extract.isosurface import Surface
+from nispcodec.infer.evaluate import classify
+
+# Area, in the normalised frame, below which a patch of one chart is a mistake of the field.
+SPECK_AREA = 1.2e-4
+SPECK_VERTICES = 2
+ROUNDS = 3
+
+Charts = NDArray[np.int32]
+Pairs = NDArray[np.int64]
+
+
+def vertex_charts(network: Network, surface: Surface) -> Charts:
+    """The chart of each vertex (n,), specks of wrong chart voted away."""
+    charts = classify(network, surface.positions)
+    edges = _links(surface.faces)
+    least = max(SPECK_VERTICES, round(SPECK_AREA / surface.cell**2))
+    for _ in range(ROUNDS):
+        before, charts = charts, _without_specks(charts, edges, least)
+        if np.array_equal(before, charts):
+            break
+    return charts
+
+
+def _links(faces: NDArray[np.int32]) -> Pairs:
+    """The edges (e, 2) of a closed surface, each once: its two faces run along it both ways."""
+    sides = np.stack([faces, np.roll(faces, -1, axis=1)], axis=2).reshape(-1, 2)
+    return sides[sides[:, 0] < sides[:, 1]].astype(np.int64)
+
+
+def _without_specks(charts: Charts, edges: Pairs, least: int) -> Charts:
+    """Patches of one chart with fewer than `least` vertices take the chart of most neighbours."""
+    a, b = edges.T
+    same = charts[a] == charts[b]
+    size = len(charts)
+    graph = coo_array((same[same], (a[same], b[same])), shape=(size, size))
+    count, patches = connected_components(graph, directed=False)
+    speck = (np.bincount(patches, minlength=count) < least)[patches]
+    borders = np.concatenate([edges[~same], edges[~same][:, ::-1]])
+    borders = borders[speck[borders[:, 0]] & ~speck[borders[:, 1]]]
+    votes = patches[borders[:, 0]].astype(np.int64) << 32 | charts[borders[:, 1]]
+    ballots, counts = np.unique(votes, return_counts=True)
+    winner_last = ballots[np.argsort(counts, kind="stable")]
+    elected = np.full(count, -1, np.int32)
+    elected[winner_last >> 32] = winner_last & 0xFFFFFFFF
+    return np.where(elected[patches] >= 0, elected[patches], charts)

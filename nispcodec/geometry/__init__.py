@@ -1,0 +1,1 @@
+"""What an asset is: solid, distance, charts, symmetry, openings."""

@@ -1,0 +1,195 @@
+"""Which charts share a number: mirror images, and charts far apart whose UVs go together.
+
+A position tells such charts apart already, so the networks need a number only to keep neighbours
+apart: some hundred charts become a few dozen labels. Some more make UVs easier to learn.
+"""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import coo_matrix
+from scipy.sparse.csgraph import connected_components
+from scipy.spatial import cKDTree
+
+from nispcodec.core.asset import FloatArray
+from nispcodec.geometry.charts import Charts, colored
+
+Kind = tuple[int, bool]
+"""Material of a chart, and whether it has UVs."""
+
+RIDGE = 1e-4
+"""Keeps the direction across a flat chart, of which nothing is known, from deciding anything."""
+
+FLOOR = 1e-3
+"""UVs nearer than this to an affine map are as good as on it."""
+
+SHARES = 0.0, 0.125, 0.25, 0.5, 0.75, 1.0
+"""How many more labels than are needed are tried."""
+WORTH = 3.0
+"""Bits a point that twice the labels have to save."""
+
+SWEEPS = 10
+MANY = 2000
+"""From so many charts on only the labels that are needed are tried, without another look."""
+
+
+@dataclass(frozen=True)
+class Cover:
+    """n points on the visible surface, of every chart some: all that merging looks at.
+
+    points       (n, 3) normalised frame
+    charts       (n,) before merging
+    coordinates  (n, d) as the UV network sees the points: of mirrored axes the absolute value
+    uvs          (n, 2)
+    """
+
+    points: FloatArray
+    charts: NDArray[np.integer]
+    coordinates: FloatArray
+    uvs: FloatArray
+
+
+def merge_charts(charts: Charts, cover: Cover, twins: NDArray[np.integer], gap: float) -> Charts:
+    """Give one number to charts of one material: twins, and those further apart than `gap`.
+
+    twins (t, 2): pairs of charts whose UVs are the same function of `coordinates`, near or far.
+    Of all charts that could share a number those do whose UVs are most nearly one affine map of the
+    coordinates: the least is left to learn for the UV network. There are more numbers than needed
+    where that saves enough.
+    """
+    alike = (charts.materials[twins] == charts.materials[twins[:, :1]]).all(axis=1)
+    group = _groups(len(charts), twins[alike])
+    count = int(group.max()) + 1
+    first = np.unique(group, return_index=True)[1]
+    kinds = [(int(charts.materials[i]), bool(charts.has_uv[i])) for i in first]
+    numbers = group[cover.charts]
+    neighbours = _neighbours(count, cover.points, numbers, gap)
+    _, needed = colored(neighbours, kinds)
+    moments = _moments(count, cover, numbers)
+    shares = SHARES if count < MANY else SHARES[:1]
+    tried = [_Fits(moments, neighbours, kinds, _more(needed, share)) for share in shares]
+    costs = [fits.mean_bits + WORTH * share for fits, share in zip(tried, shares, strict=True)]
+    best = tried[int(np.argmin(costs))]
+    used, numbered = np.unique(best.labels, return_inverse=True)
+    return Charts(
+        numbered.astype(np.int32)[group][charts.face_charts],
+        np.asarray([best.palette[label][0] for label in used], dtype=np.int32),
+        np.asarray([best.palette[label][1] for label in used], dtype=bool),
+    )
+
+
+def _more(needed: Sequence[Kind], share: float) -> list[Kind]:
+    """The kinds of the labels that are needed, and those with UVs so much more often."""
+    textured = Counter(kind for kind in needed if kind[1])
+    return [*needed, *(k for k, n in textured.items() for _ in range(math.ceil(n * share)))]
+
+
+def _moments(count: int, cover: Cover, numbers: NDArray[np.integer]) -> FloatArray:
+    """(count, d + 3, d + 3): of each chart the sums of products of coordinates, 1 and UVs."""
+    ones = np.ones((len(numbers), 1))
+    rows = np.hstack([cover.coordinates, ones, cover.uvs])
+    size = rows.shape[1]
+    products = (rows[:, :, None] * rows[:, None, :]).reshape(len(rows), -1)
+    member = coo_matrix((ones[:, 0], (numbers, np.arange(len(rows)))), (count, len(rows)))
+    moments: FloatArray = (member @ products).reshape(count, size, size)
+    return moments
+
+
+class _Fits:
+    """Labels so that the UVs of each are nearly one affine map: moments of charts add up."""
+
+    def __init__(
+        self,
+        moments: FloatArray,
+        neighbours: list[set[int]],
+        kinds: list[Kind],
+        palette: Sequence[Kind],
+    ) -> None:
+        self.moments, self.neighbours, self.kinds = moments, neighbours, kinds
+        most = len(palette) + len(moments)
+        self.mixed = np.zeros((most, *moments.shape[1:]))
+        self.bits = np.zeros(most)
+        self.labels, self.palette = colored(neighbours, kinds, palette, self._choose)
+        sweeps = SWEEPS if len(moments) < MANY else 0
+        while sweeps and self._sweep():
+            sweeps -= 1
+
+    @property
+    def mean_bits(self) -> float:
+        """How far points are from their label's map, in octaves."""
+        return float(self.bits.sum() / self.moments[:, -3, -3].sum())
+
+    def _choose(self, chart: int, labels: Sequence[int]) -> int:
+        """The label that it costs the least to add this chart to, which is done."""
+        together = self.mixed[labels] + self.moments[chart]
+        bits = _bits(together)
+        best = int(np.argmin(bits - self.bits[labels]))
+        label = labels[best]
+        self.mixed[label], self.bits[label] = together[best], bits[best]
+        return label
+
+    def _sweep(self) -> bool:
+        """Look once more at each chart, now that all others have labels; whether any moved."""
+        before = list(self.labels)
+        for chart, label in enumerate(before):
+            self.mixed[label] -= self.moments[chart]
+            self.bits[label] = _bits(self.mixed[label][None])[0]
+            taken = {self.labels[other] for other in self.neighbours[chart]}
+            kind = self.kinds[chart]
+            free = [n for n, k in enumerate(self.palette) if k == kind and n not in taken]
+            self.labels[chart] = self._choose(chart, free)
+        return self.labels != before
+
+
+def _bits(moments: FloatArray) -> FloatArray:
+    """(n,) logarithms of how far UVs are from the affine maps of least squares, for every point."""
+    points, size = moments[:, -3, -3], moments.shape[1]
+    known = moments[:, :-2, :-2] + RIDGE * np.eye(size - 2)
+    cross = moments[:, :-2, -2:]
+    explained = np.einsum("nij,nij->n", cross, np.linalg.solve(known, cross))
+    left = np.trace(moments[:, -2:, -2:], axis1=1, axis2=2) - explained
+    apart = np.maximum(left, 0) / np.maximum(points, 1) + FLOOR**2
+    bits: FloatArray = 0.5 * points * np.log2(apart)
+    return bits
+
+
+def _groups(count: int, pairs: NDArray[np.integer]) -> NDArray[np.int32]:
+    """(count,): the same number for all that pairs (t, 2) connect."""
+    graph = coo_matrix((np.ones(len(pairs)), (pairs[:, 0], pairs[:, 1])), (count, count))
+    labels: NDArray[np.int32] = connected_components(graph, directed=False)[1]
+    return labels
+
+
+def _neighbours(
+    count: int, points: FloatArray, charts: NDArray[np.integer], gap: float
+) -> list[set[int]]:
+    """For each of `count` charts, the others that come closer than `gap`.
+
+    Told by cells of that size and their neighbours, so that memory is bounded by the points: some
+    charts up to a few times as far apart count as well.
+    """
+    cells, cell = np.unique(np.floor(points / gap), axis=0, return_inverse=True)
+    shape = (len(cells), count)
+    there = coo_matrix((np.ones(len(cell), dtype=bool), (cell.reshape(-1), charts)), shape=shape)
+    adjacent = (there.T @ (_near_cells(cells) @ there)).tocoo()
+    neighbours: list[set[int]] = [set() for _ in range(count)]
+    for one, other in zip(adjacent.row.tolist(), adjacent.col.tolist(), strict=True):
+        if one != other:
+            neighbours[one].add(other)
+    return neighbours
+
+
+def _near_cells(cells: FloatArray) -> coo_matrix:
+    """(c, c) bool: cells (c, 3) of integers that touch, themselves included."""
+    pairs = cKDTree(cells).query_pairs(1.0, p=np.inf, output_type="ndarray")
+    own = np.arange(len(cells))
+    rows = np.concatenate([pairs[:, 0], pairs[:, 1], own])
+    columns = np.concatenate([pairs[:, 1], pairs[:, 0], own])
+    size = (len(cells), len(cells))
+    return coo_matrix((np.ones(len(rows), dtype=bool), (rows, columns)), shape=size).tocsr()

@@ -1,0 +1,84 @@
+"""Exact signed distance to a solid, and where on the mesh the closest surface point lies."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import igl
+import numpy as np
+from numpy.typing import NDArray
+
+from nispcodec.core.asset import FloatArray
+from nispcodec.geometry.solid import SHELL, Solid, Triangles, normals
+from nispcodec.geometry.z_order import z_order
+
+LIFT = 1e-6
+"""How far in front of a sheet (normalised frame) its points are looked for: of two faces back to
+back the one on the same side is the closest."""
+
+
+@dataclass(frozen=True)
+class Closest:
+    """(n,) signed distance; (n,) index of the closest piece; (n, 3) the closest point on it."""
+
+    sdf: FloatArray
+    piece: NDArray[np.int64]
+    point: FloatArray
+
+
+class DistanceField:
+    """The union of the bodies and of the sheets thickened by `SHELL`, as a signed distance.
+
+    libigl's own signed distance scales magnitudes by the winding number, so magnitude and sign are
+    computed apart: exact point-triangle distance, and inside where |winding number| > 1/2.
+    """
+
+    def __init__(self, solid: Solid) -> None:
+        self.solid = solid
+        self._walls = _Tree(solid.pieces, solid.wall)
+        lifted = solid.pieces + LIFT * normals(solid.pieces)[:, None]
+        self._sheets = _Tree(lifted, solid.sheet)
+
+    def closest(self, points: FloatArray, signed: bool = True) -> Closest:
+        """Signed distance (negative inside) and closest surface point of (n, 3) points.
+
+        Without `signed` all of space counts as outside, which saves most of the time.
+        """
+        points = np.ascontiguousarray(points, dtype=np.float64)
+        walls, sheets = self._walls.closest(points), self._sheets.closest(points)
+        inside = self.inside(points) if signed else np.zeros(len(points), dtype=bool)
+        distance = np.where(inside, -walls.sdf, walls.sdf)
+        thick = sheets.sdf - SHELL
+        nearer = thick < distance
+        return Closest(
+            sdf=np.where(nearer, thick, distance),
+            piece=np.where(nearer, sheets.piece, walls.piece),
+            point=np.where(nearer[:, None], sheets.point, walls.point),
+        )
+
+    def inside(self, points: FloatArray) -> NDArray[np.bool_]:
+        """Which of (n, 3) points lie inside the bodies, sheets left out."""
+        return np.abs(self.solid.winding.at(points)) > 0.5
+
+
+class _Tree:
+    """Unsigned distance to some of the pieces; infinitely far when there are none."""
+
+    def __init__(self, pieces: Triangles, chosen: NDArray[np.bool_]) -> None:
+        self.index = np.flatnonzero(chosen)
+        triangles = pieces[self.index]
+        self.vertices = np.ascontiguousarray(triangles.reshape(-1, 3))
+        self.faces = np.arange(3 * len(triangles), dtype=np.int64).reshape(-1, 3)
+        self.tree = igl.AABB()
+        if len(self.faces):
+            self.tree.init(self.vertices, self.faces)
+
+    def closest(self, points: FloatArray) -> Closest:
+        if not len(self.faces) or not len(points):
+            nowhere = np.zeros(len(points), dtype=np.int64)
+            return Closest(np.full(len(points), np.inf), nowhere, np.zeros_like(points))
+        order = z_order(points)
+        back = np.argsort(order)
+        found = self.tree.squared_distance(self.vertices, self.faces, points[order])
+        squared, face, point = (each[back] for each in found)
+        return Closest(np.sqrt(squared), self.index[face], point)

@@ -1,0 +1,278 @@
+"""What of a mesh a signed distance can hold: outer faces, hidden faces dropped, sheets thickened.
+
+Real assets are many bodies pushed into each other, with holes where nobody looks. The winding
+number says what is inside; the part of the mesh that lies inside other bodies is hidden and cannot
+be the zero set of any SDF; open sheets (cards, cloth, leaves) have no inside and get a thickness,
+as do walls too thin for one (cards of two faces back to back).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import igl
+import numpy as np
+from numpy.typing import NDArray
+
+from nispcodec.core.asset import FloatArray
+from nispcodec.core.errors import MeshError
+from nispcodec.geometry.charts import connected_faces, row_ids
+from nispcodec.geometry.z_order import z_order
+
+OFFSET = 2e-3
+"""How far off a face (normalised frame) one looks to tell which of its sides are inside."""
+
+SHELL = 4e-3
+"""Half the thickness (normalised frame) given to sheets."""
+
+THIN = 1e-3
+"""Walls thinner than this (normalised frame) are sheets: nothing inside them would be learned."""
+
+COARSE_EDGE = 0.1
+FINE_EDGE = 0.03
+DOUBT = 0.05
+
+# Half the time of libigl's default of 2; of 200,000 probes around a helmet of 82 bodies, one moved
+# across 1/2.
+ACCURACY = 1.5
+
+OPENNESS = 0.25
+UNDECIDED = 0.2
+GAP = 0.02
+
+CARD = 0.7
+"""A body whose openings have at least this share of its own area is a card."""
+
+CLOSING = 0.25
+"""A card that closes something has a winding number within this of a whole one, in the mean."""
+
+TINY = 1e-30
+
+Triangles = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Solid:
+    """A mesh in the normalised frame, sorted by what an SDF can hold.
+
+    pieces  (p, 3, 3) float64: the outer faces and sheets, large ones subdivided
+    parents (p,) int: the mesh face that each piece is part of
+    sheet   (p,) bool: pieces that get a thickness
+    wall    (p,) bool: pieces with an inside; a sheet that is one too has two faces back to back
+    winding of the closed or nearly closed bodies: where it is beyond 1/2 is inside
+    hidden_share, sheet_share: of the mesh's area
+    """
+
+    pieces: Triangles
+    parents: NDArray[np.int64]
+    sheet: NDArray[np.bool_]
+    wall: NDArray[np.bool_]
+    winding: Winding
+    hidden_share: float
+    sheet_share: float
+
+
+def build_solid(corners: Triangles) -> Solid:
+    """Sort the faces (m, 3, 3), normalised frame. Raises MeshError when none can be seen."""
+    free = _free_bodies(corners)
+    bodies = corners[~free]
+    winding = Winding(bodies)
+    pieces, parents, kind = _classify(winding, bodies, np.flatnonzero(~free))
+    hidden = kind == _HIDDEN
+    total = area(corners).sum()
+    all_pieces = np.concatenate([pieces[~hidden], corners[free]])
+    if not len(all_pieces):
+        raise MeshError(f"expected faces to be seen from outside, found {len(corners)} hidden ones")
+    kinds = np.concatenate([kind[~hidden], np.full(free.sum(), _SHEET)])
+    sheet = kinds != _OUTER
+    return Solid(
+        pieces=all_pieces,
+        parents=np.concatenate([parents[~hidden], np.flatnonzero(free)]),
+        sheet=sheet,
+        wall=kinds != _SHEET,
+        winding=winding,
+        hidden_share=float(area(pieces[hidden]).sum() / total),
+        sheet_share=float(area(all_pieces[sheet]).sum() / total),
+    )
+
+
+def area(triangles: Triangles) -> FloatArray:
+    """(n, 3, 3) -> (n,)."""
+    doubled: FloatArray = np.linalg.norm(_cross(triangles), axis=1)
+    return doubled / 2
+
+
+def normals(triangles: Triangles) -> FloatArray:
+    """(n, 3, 3) -> (n, 3), unit length; zero for degenerate triangles."""
+    cross = _cross(triangles)
+    length = np.linalg.norm(cross, axis=1, keepdims=True)
+    return np.divide(cross, length, out=np.zeros_like(cross), where=length > 0)
+
+
+class Winding:
+    """Generalised winding number of a triangle soup (m, 3, 3)."""
+
+    def __init__(self, bodies: Triangles) -> None:
+        self._tree = igl.FastWindingNumberBVH()
+        self._empty = not len(bodies)
+        if not self._empty:
+            faces = np.arange(3 * len(bodies), dtype=np.int64).reshape(-1, 3)
+            self._tree.init(np.ascontiguousarray(bodies.reshape(-1, 3)), faces)
+
+    def at(self, points: FloatArray) -> FloatArray:
+        """(n, 3) -> (n,)."""
+        if self._empty or not len(points):
+            return np.zeros(len(points))
+        order = z_order(points)
+        number = np.empty(len(points))
+        number[order] = self._tree.winding_number(points[order], ACCURACY)
+        return number
+
+
+_OUTER, _HIDDEN, _SHEET, _THIN, _MIXED = range(5)
+
+
+def _classify(
+    winding: Winding, bodies: Triangles, parents: NDArray[np.int64]
+) -> tuple[Triangles, NDArray[np.int64], NDArray[np.int64]]:
+    """Subdivide the faces until each piece is of one kind: pieces, their parents, their kinds."""
+    done: list[tuple[Triangles, NDArray[np.int64], NDArray[np.int64]]] = []
+    todo, todo_parents = bodies, parents
+    while len(todo):
+        longest = _longest_edge(todo)
+        kind = _kind(winding, todo, single=longest <= FINE_EDGE)
+        split = (longest > COARSE_EDGE) | (kind == _MIXED)
+        kind = np.where(kind == _MIXED, _OUTER, kind)
+        keep = ~split | (longest <= FINE_EDGE)
+        done.append((todo[keep], todo_parents[keep], kind[keep]))
+        todo, todo_parents = _subdivide(todo[~keep]), np.repeat(todo_parents[~keep], 4)
+    pieces, owners, kinds = zip(*done, strict=True) if done else ((bodies,), (parents,), (parents,))
+    everything, kind = np.concatenate(pieces), np.concatenate(kinds)
+    kind[_thin(winding, everything) & (kind == _OUTER)] = _THIN
+    return everything, np.concatenate(owners), kind
+
+
+def _thin(winding: Winding, pieces: Triangles) -> NDArray[np.bool_]:
+    """Which pieces (p,) have the outside in front and, a thin wall away, behind them as well."""
+    centre, step = pieces.mean(axis=1), THIN * normals(pieces)
+    thin: NDArray[np.bool_] = np.abs(winding.at(centre - step)) <= 0.5
+    thin[thin] = np.abs(winding.at((centre + step)[thin])) <= 0.5
+    return thin
+
+
+def _kind(winding: Winding, pieces: Triangles, single: NDArray[np.bool_]) -> NDArray[np.int64]:
+    """Kind of each piece from its centroid, and for all but the small ones from its corners too."""
+    kind = _point_kind(winding, pieces, np.full(3, 1 / 3))
+    large = np.flatnonzero(~single)
+    for corner in range(3):
+        weights = np.full(3, 0.05)
+        weights[corner] = 0.9
+        other = _point_kind(winding, pieces[large], weights)
+        kind[large] = np.where(other == kind[large], other, _MIXED)
+    return kind
+
+
+def _point_kind(winding: Winding, pieces: Triangles, weights: FloatArray) -> NDArray[np.int64]:
+    """Across a face the winding number falls by one, so one look in front is enough.
+
+    Not quite by one across a card, whose rim shows: hence the doubtful band.
+    """
+    points = np.einsum("c,ncx->nx", weights, pieces) + OFFSET * normals(pieces)
+    front = winding.at(points)
+    doubtful = np.abs(front + 0.5) < DOUBT
+    inside = (np.abs(front) > 0.5) & (np.abs(front + 1) > 0.5)
+    return np.select([doubtful, inside], [_SHEET, _HIDDEN], _OUTER)
+
+
+def _free_bodies(corners: Triangles) -> NDArray[np.bool_]:
+    """Faces (m,) of bodies that enclose nothing: sheets, whatever the winding number says."""
+    vertices = row_ids(corners.reshape(-1, 3)).reshape(-1, 3)
+    body = connected_faces(vertices)
+    size = np.maximum(np.bincount(body, weights=area(corners)), TINY)
+    opening, centre, owner = _openings(corners, vertices, body)
+    exposed = _exposed(corners, centre)
+    open_area = np.bincount(owner[exposed], weights=opening[exposed], minlength=len(size))
+    is_open = open_area / size > OPENNESS
+    is_card = np.bincount(owner, weights=opening, minlength=len(size)) / size > CARD
+    mask: NDArray[np.bool_] = _with_cards(corners, body, is_card, is_open)[body]
+    return mask
+
+
+def _exposed(corners: Triangles, centre: FloatArray) -> NDArray[np.bool_]:
+    """Which openings, by their centres (n, 3), are large and not plugged by another body.
+
+    Closing one, as the winding number does where it passes 1/2, would draw a membrane that nobody
+    modelled. Openings within `GAP` of the mesh (flat cards, panels) need no such care.
+    """
+    undecided = np.abs(np.abs(Winding(corners).at(centre)) - 0.5) < UNDECIDED
+    exposed: NDArray[np.bool_] = undecided & (_gap(corners, centre) > GAP)
+    return exposed
+
+
+def _with_cards(
+    corners: Triangles, body: NDArray[np.integer], card: NDArray[np.bool_], free: NDArray[np.bool_]
+) -> NDArray[np.bool_]:
+    """The `free` bodies (b,) and the cards among the others that close nothing.
+
+    The winding number beside a card is a half and whatever its neighbours add: where there are many
+    (leaves), any number. Beside one that closes a body it is a whole one. Cards let go show others.
+    """
+    while (card & ~free).any():
+        faces = np.flatnonzero((card & ~free)[body])
+        sizes, shown = area(corners[faces]), corners[faces]
+        front = Winding(corners[~free[body]]).at(shown.mean(axis=1) + OFFSET * normals(shown))
+        total = np.bincount(body[faces], sizes, len(free))
+        mean = np.bincount(body[faces], front * sizes, len(free)) / np.maximum(total, TINY)
+        loose = np.abs(mean + 0.5) < 0.5 - CLOSING
+        if not loose.any():
+            break
+        free = free | loose
+    return free
+
+
+def _gap(corners: Triangles, points: FloatArray) -> FloatArray:
+    if not len(points):
+        return np.zeros(0)
+    faces = np.arange(3 * len(corners), dtype=np.int64).reshape(-1, 3)
+    vertices = np.ascontiguousarray(corners.reshape(-1, 3))
+    squared: FloatArray = igl.point_mesh_squared_distance(points, vertices, faces)[0]
+    return np.sqrt(squared)
+
+
+def _openings(
+    corners: Triangles, vertices: NDArray[np.int64], body: NDArray[np.integer]
+) -> tuple[FloatArray, FloatArray, NDArray[np.integer]]:
+    """Fan triangles that close every boundary loop: their areas, centres and bodies."""
+    start = vertices.reshape(-1)
+    end = np.roll(vertices, -1, axis=1).reshape(-1)
+    low, high = np.minimum(start, end), np.maximum(start, end)
+    _, edge = np.unique(low * (int(vertices.max()) + 1) + high, return_inverse=True)
+    balance = np.bincount(edge.reshape(-1), weights=np.where(start < end, 1, -1))
+    boundary = np.flatnonzero(balance[edge.reshape(-1)] != 0)
+    first = corners.reshape(-1, 3)[boundary]
+    second = np.roll(corners, -1, axis=1).reshape(-1, 3)[boundary]
+    owner = np.repeat(body, 3)[boundary]
+    loop = connected_faces(np.stack([start, end, start], axis=1)[boundary]) if len(first) else owner
+    size = np.maximum(np.bincount(loop), 1)[:, None] if len(loop) else np.ones((1, 1))
+    middle = np.stack([np.bincount(loop, weights=first[:, a]) for a in range(3)], axis=1) / size
+    fan = np.stack([first, second, middle[loop]], axis=1)
+    return area(fan), fan.mean(axis=1), owner
+
+
+def _subdivide(triangles: Triangles) -> Triangles:
+    """Each triangle into four through its edge midpoints, children of one parent together."""
+    a, b, c = triangles[:, 0], triangles[:, 1], triangles[:, 2]
+    ab, bc, ca = (a + b) / 2, (b + c) / 2, (c + a) / 2
+    children = [(a, ab, ca), (ab, b, bc), (ca, bc, c), (ab, bc, ca)]
+    stacked = np.stack([np.stack(child, axis=1) for child in children], axis=1)
+    return stacked.reshape(-1, 3, 3)
+
+
+def _longest_edge(triangles: Triangles) -> FloatArray:
+    edges = triangles - np.roll(triangles, 1, axis=1)
+    longest: FloatArray = np.linalg.norm(edges, axis=2).max(axis=1, initial=0.0)
+    return longest
+
+
+def _cross(triangles: Triangles) -> FloatArray:
+    return np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0])

@@ -1,0 +1,52 @@
+"""Random points on triangles and in the ball, and where in its triangle a point lies."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from nispcodec.core.asset import FloatArray
+from nispcodec.geometry.solid import Triangles, area
+
+
+def barycentric(triangles: Triangles, points: FloatArray) -> FloatArray:
+    """Barycentric coordinates (n, 3) of points (n, 3) in the planes of triangles (n, 3, 3)."""
+    ab, ac = triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0]
+    ap = points - triangles[:, 0]
+    bb, bc, cc, pb, pc = (
+        (p * q).sum(axis=1) for p, q in ((ab, ab), (ab, ac), (ac, ac), (ap, ab), (ap, ac))
+    )
+    determinant = np.maximum(bb * cc - bc * bc, 1e-300)
+    v, w = (cc * pb - bc * pc) / determinant, (bb * pc - bc * pb) / determinant
+    weights = np.clip(np.stack([1 - v - w, v, w], axis=1), 0.0, 1.0)
+    return weights / weights.sum(axis=1, keepdims=True)
+
+
+def random_barycentric(random: np.random.Generator, count: int) -> FloatArray:
+    """(count, 3) barycentric coordinates, uniform over a triangle."""
+    root = np.sqrt(random.random(count))
+    second = random.random(count)
+    return np.stack([1 - root, root * (1 - second), root * second], axis=1)
+
+
+def uniform_surface(
+    random: np.random.Generator, pieces: Triangles, count: int
+) -> tuple[FloatArray, NDArray[np.int64]]:
+    """Points (count, 3) uniform by area on pieces (p, 3, 3), and the pieces they lie on."""
+    return points_on(random, pieces, area(pieces), count)
+
+
+def points_on(
+    random: np.random.Generator, pieces: Triangles, weight: FloatArray, count: int
+) -> tuple[FloatArray, NDArray[np.int64]]:
+    """As `uniform_surface`, with pieces drawn by their weight (p,) in place of their area."""
+    piece = random.choice(len(pieces), size=count, p=weight / weight.sum())
+    weights = random_barycentric(random, count)
+    return np.einsum("nc,ncx->nx", weights, pieces[piece]), piece
+
+
+def uniform_ball(random: np.random.Generator, count: int) -> FloatArray:
+    """(count, 3) points uniform in the unit ball."""
+    direction = random.normal(size=(count, 3))
+    direction /= np.linalg.norm(direction, axis=1, keepdims=True)
+    return direction * np.cbrt(random.random((count, 1)))

@@ -1,0 +1,28 @@
+"""Points in an order that follows space: a tree asked for neighbours in turn finds its way cached.
+
+Morton's Z-order curve. In random order distances take twice as long, winding numbers up to 1.4
+times (docs/lab-notes.md).
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from nispcodec.core.asset import FloatArray
+
+BITS = 7
+
+
+def z_order(points: FloatArray) -> NDArray[np.int64]:
+    """The order (n,) of points (n, 3) along the curve through the cells of their bounding box."""
+    if not len(points):
+        return np.zeros(0, dtype=np.int64)
+    low = points.min(axis=0)
+    size = float((points.max(axis=0) - low).max()) or 1.0
+    cells = np.minimum((points - low) / size * (1 << BITS), (1 << BITS) - 1).astype(np.int64)
+    code = np.zeros(len(points), dtype=np.int64)
+    for bit in range(BITS):
+        for axis in range(3):
+            code |= (cells[:, axis] >> bit & 1) << (3 * bit + axis)
+    return np.argsort(code, kind="stable")

@@ -1,0 +1,1 @@
+"""Networks evaluated in numpy."""

@@ -1,0 +1,22 @@
+"""Texture coordinates of points on known charts."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from nispcodec.core.document import Document
+from nispcodec.infer.evaluate import evaluate
+
+Floats = NDArray[np.float32]
+
+
+def asset_uv(document: Document, points: Floats, charts: NDArray[np.integer]) -> Floats:
+    """UV of points (n, 3), normalised frame, on charts (n,) -> (n, 2); (0, 0) without UV."""
+    if document.uv is None:
+        return np.zeros((len(points), 2), np.float32)
+    table = document.charts
+    conditioned = document.uv.spec.conditioning != "none"
+    uvs = evaluate(document.uv, points, charts if conditioned else None)
+    placed = uvs * np.array(table.uv_scale, np.float32) + np.array(table.uv_offset, np.float32)
+    return np.where(table.has_uv[charts][:, None], placed, np.float32(0))

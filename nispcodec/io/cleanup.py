@@ -1,0 +1,113 @@
+"""Clean-up common to all readers: drop what carries no surface, and say how much of it."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from nispcodec.core.asset import FloatArray, IndexArray, TexturedMesh
+from nispcodec.core.errors import MeshError
+from nispcodec.geometry.charts import row_ids
+
+Mask = NDArray[np.bool_]
+
+# A triangle lower than this share of its longest edge is a line.
+FLATTEST = 1e-10
+# Squares of larger coordinates' differences would leave float32 and soon float64.
+LARGEST_COORDINATE = 1e15
+
+
+def clean(mesh: TexturedMesh, name: str) -> TexturedMesh:
+    """Drop degenerate faces, exact duplicates, then vertices and UVs that no face uses.
+
+    Each kind is counted in `warnings`. Vertices of equal position are not merged. Raises MeshError
+    naming the file `name` when no face is left or a coordinate is too large to compute with.
+    """
+    if not len(mesh.faces):
+        raise MeshError(f"{name}: expected at least one face, found none")
+    _expect_moderate(mesh.positions, name)
+    flat = degenerate_faces(mesh)
+    if flat.all():
+        raise MeshError(f"{name}: expected faces with an area, found {len(flat)} degenerate faces")
+    mesh = _drop_faces(mesh, flat, "degenerate")
+    mesh = _drop_faces(mesh, duplicate_faces(mesh), "duplicate")
+    return _drop_unreferenced(mesh)
+
+
+def degenerate_faces(mesh: TexturedMesh) -> Mask:
+    """(m,) bool: faces that repeat a position or whose area is zero to rounding."""
+    corners = mesh.corners
+    edges = np.roll(corners, -1, axis=1) - corners
+    longest = np.linalg.norm(edges, axis=2).max(axis=1)
+    scaled = edges / np.where(longest > 0, longest, 1.0)[:, None, None]
+    height = np.linalg.norm(np.cross(scaled[:, 0], scaled[:, 1]), axis=1)
+    flat: Mask = (height <= FLATTEST) | (edges == 0).all(axis=2).any(axis=1)
+    return flat
+
+
+def duplicate_faces(mesh: TexturedMesh) -> Mask:
+    """(m,) bool: faces equal to an earlier one in positions, orientation, UVs and material."""
+    # Adding zero makes -0 and 0 the same bits.
+    position = row_ids(mesh.positions + 0.0)[mesh.faces]
+    uv = np.append(row_ids(mesh.uvs + 0.0), -1)[mesh.uv_faces]
+    corners = np.stack([position, uv], axis=2)
+    first = np.argmin(corners[:, :, 0], axis=1)
+    turned = np.take_along_axis(corners, ((first[:, None] + [0, 1, 2]) % 3)[:, :, None], axis=1)
+    keys = np.hstack([turned.reshape(-1, 6), mesh.face_materials[:, None]])
+    repeated = np.ones(len(keys), dtype=bool)
+    repeated[np.unique(keys, axis=0, return_index=True)[1]] = False
+    return repeated
+
+
+def _expect_moderate(positions: FloatArray, name: str) -> None:
+    largest = np.abs(positions).max()
+    if largest > LARGEST_COORDINATE:
+        raise MeshError(
+            f"{name}: expected coordinates up to {LARGEST_COORDINATE:g}, found {largest:g}"
+        )
+
+
+def _drop_faces(mesh: TexturedMesh, dropped: Mask, kind: str) -> TexturedMesh:
+    if not dropped.any():
+        return mesh
+    return replace(
+        mesh,
+        faces=mesh.faces[~dropped],
+        uv_faces=mesh.uv_faces[~dropped],
+        face_materials=mesh.face_materials[~dropped],
+        warnings=(*mesh.warnings, f"dropped {_count(int(dropped.sum()), f'{kind} face')}"),
+    )
+
+
+def _drop_unreferenced(mesh: TexturedMesh) -> TexturedMesh:
+    positions, faces = _compact(mesh.positions, mesh.faces)
+    uvs, uv_faces = _compact(mesh.uvs, mesh.uv_faces)
+    lost = {
+        "unreferenced vertex": len(mesh.positions) - len(positions),
+        "unreferenced texture coordinate": len(mesh.uvs) - len(uvs),
+    }
+    said = tuple(f"dropped {_count(count, kind)}" for kind, count in lost.items() if count)
+    return replace(
+        mesh,
+        positions=positions,
+        faces=faces,
+        uvs=uvs,
+        uv_faces=uv_faces,
+        warnings=mesh.warnings + said,
+    )
+
+
+def _compact(rows: FloatArray, faces: IndexArray) -> tuple[FloatArray, IndexArray]:
+    """Keep the rows that faces use, in their order; index -1 stays -1."""
+    used = np.zeros(len(rows) + 1, dtype=bool)
+    used[faces] = True
+    used[-1] = False
+    numbers = np.append(np.cumsum(used[:-1]) - 1, -1).astype(np.int32)
+    return rows[used[:-1]], numbers[faces]
+
+
+def _count(number: int, noun: str) -> str:
+    plural = noun.replace("vertex", "vertice") + "s"
+    return f"{number} {noun if number == 1 else plural}"

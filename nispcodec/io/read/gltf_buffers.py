@@ -1,0 +1,178 @@
+"""The binary side of glTF 2.0: containers, buffers, accessors, every reach checked first."""
+
+from __future__ import annotations
+
+import base64
+import struct
+from typing import Any
+from urllib.parse import unquote, unquote_to_bytes
+
+import numpy as np
+from numpy.typing import NDArray
+
+from nispcodec.core.errors import MeshError
+from nispcodec.io.folder import Folder
+from nispcodec.io.read.gltf_json import Element
+
+Array = NDArray[Any]
+
+_COMPONENTS: dict[int, np.dtype[Any]] = {
+    5120: np.dtype("i1"),
+    5121: np.dtype("u1"),
+    5122: np.dtype("<i2"),
+    5123: np.dtype("<u2"),
+    5125: np.dtype("<u4"),
+    5126: np.dtype("<f4"),
+}
+_WIDTHS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3}
+_JSON_CHUNK, _BINARY_CHUNK = 0x4E4F534A, 0x004E4942
+# An accessor without a buffer view is all zeros and costs a file nothing: no more than this.
+_MOST_ZEROS = 10_000_000
+
+
+def split_glb(data: bytes, name: str) -> tuple[bytes, bytes | None]:
+    """The JSON text and the binary chunk of a GLB file; other data is JSON text itself."""
+    if not data.startswith(b"glTF"):
+        return data, None
+    if len(data) < 12:
+        raise MeshError(f"{name}: expected a GLB header of 12 bytes, found {len(data)}")
+    version, length = struct.unpack_from("<II", data, 4)
+    if version != 2:
+        raise MeshError(f"{name}: expected GLB version 2, found {version}")
+    if length > len(data):
+        raise MeshError(f"{name}: expected {length} bytes, found {len(data)}: file cut short")
+    chunks = _chunks(data[:length], name)
+    if not chunks or chunks[0][0] != _JSON_CHUNK:
+        raise MeshError(f"{name}: expected a JSON chunk first, found {len(chunks)} other chunks")
+    binary = next((chunk for kind, chunk in chunks if kind == _BINARY_CHUNK), None)
+    return chunks[0][1], binary
+
+
+def _chunks(data: bytes, name: str) -> list[tuple[int, bytes]]:
+    chunks, at = [], 12
+    while at + 8 <= len(data):
+        length, kind = struct.unpack_from("<II", data, at)
+        at += 8
+        if length > len(data) - at:
+            raise MeshError(
+                f"{name}: byte {at}: expected a chunk of {length} bytes, found {len(data) - at}"
+            )
+        chunks.append((kind, data[at : at + length]))
+        at += length
+    return chunks
+
+
+def read_uri(uri: str, folder: Folder, place: str) -> bytes | None:
+    """The bytes behind a data URI or a file name; None when there is no such file."""
+    if not uri.startswith("data:"):
+        path = folder.find(unquote(uri)) or folder.find(uri)
+        return None if path is None else folder.read(path)
+    header, _, payload = uri.partition(",")
+    if not header.endswith(";base64"):
+        return unquote_to_bytes(payload)
+    try:
+        return base64.b64decode(payload)
+    except ValueError as why:
+        raise MeshError(f"{place}: expected base64 in the data URI, found: {why}") from why
+
+
+class Buffers:
+    """The buffers of one document, read when first used."""
+
+    def __init__(self, root: Element, binary: bytes | None, folder: Folder) -> None:
+        self._root = root
+        self._binary = binary
+        self._folder = folder
+        self._read: dict[int, bytes] = {}
+
+    def view(self, index: int) -> memoryview:
+        """The bytes of a buffer view."""
+        view = self._root.entry("bufferViews", index)
+        offset, length = view.integer("byteOffset", 0), view.integer("byteLength")
+        buffer = self._buffer(view.integer("buffer"))
+        if offset + length > len(buffer):
+            view.fail(f"an end within {len(buffer)} bytes", offset + length)
+        return memoryview(buffer)[offset : offset + length]
+
+    def numbers(self, index: int, width: int) -> NDArray[np.float64]:
+        """(n, width) float64 of an accessor; normalised integers become fractions."""
+        accessor = self._root.entry("accessors", index)
+        values = self._values(accessor, width)
+        finite = np.isfinite(values).all(axis=1)
+        if not finite.all():
+            element = int(finite.argmin())
+            accessor.fail(f"finite numbers in element {element}", values[element].tolist())
+        numbers = values.astype(np.float64)
+        if accessor.flag("normalized") and values.dtype.kind in "iu":
+            numbers = np.maximum(numbers / np.iinfo(values.dtype).max, -1.0)
+        return numbers
+
+    def indices(self, index: int) -> NDArray[np.int64]:
+        """(n,) int64 of a scalar accessor of unsigned integers."""
+        accessor = self._root.entry("accessors", index)
+        values = self._values(accessor, 1)
+        if values.dtype.kind != "u":
+            accessor.fail("unsigned integers", values.dtype.name)
+        return values.astype(np.int64)[:, 0]
+
+    def _buffer(self, index: int) -> bytes:
+        if index not in self._read:
+            self._read[index] = self._open(index)
+        return self._read[index]
+
+    def _open(self, index: int) -> bytes:
+        buffer = self._root.entry("buffers", index)
+        length = buffer.integer("byteLength")
+        if buffer.get("uri") is None:
+            data = self._binary if index == 0 else None
+        else:
+            data = read_uri(buffer.text("uri", ""), self._folder, buffer.place)
+        if data is None:
+            buffer.fail("a binary file", buffer.text("uri", "no binary chunk"))
+        if len(data) < length:
+            buffer.fail(f"{length} bytes", f"{len(data)} bytes")
+        return data[:length]
+
+    def _values(self, accessor: Element, width: int) -> Array:
+        kind = accessor.text("type", "")
+        if _WIDTHS.get(kind) != width:
+            accessor.fail(f"type {next(k for k, w in _WIDTHS.items() if w == width)}", kind)
+        count = accessor.integer("count")
+        if accessor.get("bufferView") is None:
+            if count > _MOST_ZEROS:
+                accessor.fail(f"at most {_MOST_ZEROS} elements without a bufferView", count)
+            values: Array = np.zeros((count, width), dtype=_component(accessor))
+        else:
+            values = self._elements(accessor, count, _component(accessor), width)
+        sparse = accessor.get("sparse")
+        return values if sparse is None else self._with_sparse(values, sparse)
+
+    def _elements(self, reader: Element, count: int, dtype: np.dtype[Any], width: int) -> Array:
+        """(count, width) view of the bufferView that `reader` names, at its byteOffset."""
+        index = reader.integer("bufferView")
+        data, offset = self.view(index), reader.integer("byteOffset", 0)
+        size = dtype.itemsize * width
+        stride = self._root.entry("bufferViews", index).integer("byteStride", 0) or size
+        end = offset + stride * (count - 1) + size
+        if count and end > len(data):
+            reader.fail(f"an end within the {len(data)} bytes of bufferView {index}", end)
+        if not count:
+            return np.zeros((0, width), dtype=dtype)
+        return np.ndarray((count, width), dtype, data, offset, (stride, dtype.itemsize))
+
+    def _with_sparse(self, base: Array, sparse: Element) -> Array:
+        count = sparse.integer("count")
+        indices, values = sparse.need("indices"), sparse.need("values")
+        places = self._elements(indices, count, _component(indices), 1)[:, 0]
+        if places.dtype.kind != "u" or (count and int(places.max()) >= len(base)):
+            indices.fail(f"unsigned indices below {len(base)}", places.tolist())
+        filled = base.copy()
+        filled[places] = self._elements(values, count, base.dtype, base.shape[1])
+        return filled
+
+
+def _component(element: Element) -> np.dtype[Any]:
+    code = element.integer("componentType")
+    if code not in _COMPONENTS:
+        element.fail(f"a componentType of {list(_COMPONENTS)}", code)
+    return _COMPONENTS[code]

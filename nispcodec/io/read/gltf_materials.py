@@ -1,0 +1,227 @@
+"""glTF 2.0 materials, and which texture coordinates their maps look up."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from urllib.parse import unquote
+
+import numpy as np
+
+from nispcodec.core.asset import FloatArray, Material, TextureMap
+from nispcodec.io.folder import Folder
+from nispcodec.io.images import TextureShelf
+from nispcodec.io.read.gltf_buffers import Buffers, read_uri
+from nispcodec.io.read.gltf_json import Element
+
+_WRAPS = {10497: "repeat", 33071: "clamp", 33648: "mirror"}
+_FILTERS = {9728: "nearest", 9729: "linear"}
+_STRENGTHS = {"normal": "scale", "occlusion": "strength"}
+_IMAGE_EXTENSIONS = ("EXT_texture_webp", "EXT_texture_avif")
+_GLOSSY = "KHR_materials_pbrSpecularGlossiness"
+
+
+@dataclass(frozen=True)
+class UvSource:
+    """A set of texture coordinates and the transform of KHR_texture_transform."""
+
+    texcoord: int = 0
+    offset: tuple[float, ...] = (0.0, 0.0)
+    rotation: float = 0.0
+    scale: tuple[float, ...] = (1.0, 1.0)
+
+    def apply(self, uvs: FloatArray) -> FloatArray:
+        """(n, 2) as in the file -> (n, 2) as looked up; both have their origin top-left."""
+        if self.offset == (0.0, 0.0) and not self.rotation and self.scale == (1.0, 1.0):
+            return uvs
+        # The extension's text turns counter-clockwise as seen, with v pointing down. Its GLSL
+        # turns the other way, but its example and all known viewers follow the text.
+        cosine, sine = math.cos(self.rotation), math.sin(self.rotation)
+        turn = np.array([[cosine, sine], [-sine, cosine]])
+        moved: FloatArray = (uvs * self.scale) @ turn.T + self.offset
+        return moved
+
+
+class GltfMaterials:
+    """The materials that primitives use, numbered in the order of their first use."""
+
+    def __init__(
+        self, root: Element, buffers: Buffers, folder: Folder, warnings: list[str]
+    ) -> None:
+        self.shelf = TextureShelf(warnings)
+        self._root = root
+        self._buffers = buffers
+        self._folder = folder
+        self._warnings = warnings
+        self._images: dict[int, int | None] = {}
+        self._made: dict[int | None, tuple[Material, UvSource]] = {}
+
+    def use(self, index: int | None) -> tuple[int, UvSource]:
+        """The number of a document's material, None being the default, and its UVs."""
+        if index not in self._made:
+            self._made[index] = self._make(index)
+        return list(self._made).index(index), self._made[index][1]
+
+    @property
+    def materials(self) -> tuple[Material, ...]:
+        return tuple(material for material, _ in self._made.values()) or (Material(),)
+
+    def _make(self, index: int | None) -> tuple[Material, UvSource]:
+        if index is None:
+            return Material(metallic=1.0), UvSource()
+        source = self._root.entry("materials", index)
+        glossy = source.extension(_GLOSSY) if source.get("pbrMetallicRoughness") is None else None
+        self._warn_of_extensions(source, glossy is not None)
+        red, green, blue = source.numbers("emissiveFactor", (0.0, 0.0, 0.0))
+        infos = dict(_texture_infos(source, glossy))
+        factors = _glossy_factors(glossy) if glossy else _metallic_factors(source)
+        material = Material(
+            name=source.text("name", "") or f"material_{index}",
+            base_color=factors[0],
+            metallic=factors[1],
+            roughness=factors[2],
+            emissive=(_unit(red), _unit(green), _unit(blue)),
+            alpha_mode=_alpha_mode(source),
+            alpha_cutoff=_unit(source.number("alphaCutoff", 0.5)),
+            double_sided=source.flag("doubleSided"),
+            maps=self._maps(infos),
+        )
+        return material, self._uv_source(infos, source)
+
+    def _maps(self, infos: dict[str, Element]) -> dict[str, TextureMap]:
+        made = {slot: self._map(slot, info) for slot, info in infos.items()}
+        return {slot: used for slot, used in made.items() if used is not None}
+
+    def _map(self, slot: str, info: Element) -> TextureMap | None:
+        texture = self._root.entry("textures", info.integer("index"))
+        image = self._image_index(texture)
+        if image is None:
+            self._warnings.append(f"{texture.place}: holds no image that we can read")
+            return None
+        if image not in self._images:
+            self._images[image] = self._image(image)
+        place = self._images[image]
+        if place is None:
+            return None
+        strength = info.number(_STRENGTHS[slot], 1.0) if slot in _STRENGTHS else 1.0
+        wrap, texture_filter = self._sampling(texture)
+        return TextureMap(place, wrap, texture_filter, strength)
+
+    def _image_index(self, texture: Element) -> int | None:
+        for name in _IMAGE_EXTENSIONS:
+            extension = texture.extension(name)
+            if extension is not None:
+                return extension.integer("source")
+        return texture.optional("source")
+
+    def _image(self, index: int) -> int | None:
+        image = self._root.entry("images", index)
+        uri = image.text("uri", "")
+        if uri:
+            data = read_uri(uri, self._folder, image.place)
+        else:
+            data = bytes(self._buffers.view(image.integer("bufferView")))
+        shown = "" if uri.startswith("data:") else unquote(uri)
+        name = shown or image.text("name", "") or f"image_{index}"
+        if data is None:
+            self._warnings.append(f"{image.place}: image {name!r} not found")
+            return None
+        return self.shelf.add(name, data, f"{image.place} ({name})")
+
+    def _sampling(self, texture: Element) -> tuple[tuple[str, str], str]:
+        index = texture.optional("sampler")
+        if index is None:
+            return ("repeat", "repeat"), "linear"
+        sampler = self._root.entry("samplers", index)
+        modes = [sampler.integer(key, 10497) for key in ("wrapS", "wrapT")]
+        if not set(modes) <= set(_WRAPS):
+            sampler.fail(f"wraps of {list(_WRAPS)}", modes)
+        chosen = _FILTERS.get(sampler.integer("magFilter", 9729), "linear")
+        return (_WRAPS[modes[0]], _WRAPS[modes[1]]), chosen
+
+    def _uv_source(self, infos: dict[str, Element], material: Element) -> UvSource:
+        """Those of the base colour, else of the first map; a mesh here has one set of UVs."""
+        sources = [_uv_source(info) for info in infos.values()]
+        if len(set(sources)) > 1:
+            self._warnings.append(
+                f"{material.place}: maps use different texture coordinates; "
+                f"those of {next(iter(infos))} are taken for all"
+            )
+        return sources[0] if sources else UvSource()
+
+    def _warn_of_extensions(self, material: Element, glossy: bool) -> None:
+        if glossy:
+            self._warnings.append(
+                f"{material.place}: specular-glossiness turned into diffuse and roughness"
+            )
+        extensions = material.get("extensions")
+        names = extensions.value if extensions and isinstance(extensions.value, dict) else {}
+        self._warnings.extend(
+            f"{material.place}: extension {name!r} is left out"
+            for name in names
+            if not (glossy and name == _GLOSSY)
+        )
+
+
+def _texture_infos(material: Element, glossy: Element | None) -> Iterator[tuple[str, Element]]:
+    """Slot and textureInfo of each map, base colour first."""
+    metallic = material.get("pbrMetallicRoughness")
+    candidates = (
+        ("base_color", glossy, "diffuseTexture"),
+        ("base_color", metallic, "baseColorTexture"),
+        ("metallic_roughness", metallic, "metallicRoughnessTexture"),
+        ("normal", material, "normalTexture"),
+        ("occlusion", material, "occlusionTexture"),
+        ("emissive", material, "emissiveTexture"),
+    )
+    for slot, owner, key in candidates:
+        info = None if owner is None else owner.get(key)
+        if info is not None:
+            yield slot, info
+
+
+Factors = tuple[tuple[float, float, float, float], float, float]
+
+
+def _metallic_factors(material: Element) -> Factors:
+    """Base colour, metallic, roughness."""
+    pbr = material.get("pbrMetallicRoughness") or Element({}, material.file, material.path)
+    color = _color(pbr, "baseColorFactor")
+    return (
+        color,
+        _unit(pbr.number("metallicFactor", 1.0)),
+        _unit(pbr.number("roughnessFactor", 1.0)),
+    )
+
+
+def _glossy_factors(glossy: Element) -> Factors:
+    roughness = 1.0 - _unit(glossy.number("glossinessFactor", 1.0))
+    return _color(glossy, "diffuseFactor"), 0.0, roughness
+
+
+def _color(owner: Element, key: str) -> tuple[float, float, float, float]:
+    red, green, blue, alpha = owner.numbers(key, (1.0, 1.0, 1.0, 1.0))
+    return _unit(red), _unit(green), _unit(blue), _unit(alpha)
+
+
+def _alpha_mode(material: Element) -> str:
+    mode = material.text("alphaMode", "OPAQUE").lower()
+    return mode if mode in ("opaque", "mask", "blend") else material.fail("an alphaMode", mode)
+
+
+def _uv_source(info: Element) -> UvSource:
+    texcoord = info.integer("texCoord", 0)
+    moved = info.extension("KHR_texture_transform")
+    if moved is None:
+        return UvSource(texcoord)
+    return UvSource(
+        moved.integer("texCoord", texcoord),
+        moved.numbers("offset", (0.0, 0.0)),
+        moved.number("rotation", 0.0),
+        moved.numbers("scale", (1.0, 1.0)),
+    )
+
+
+def _unit(value: float) -> float:
+    return min(max(value, 0.0), 1.0)

@@ -1,0 +1,195 @@
+"""Wavefront OBJ: polygons with a material each, and an index of its own for every corner's UV."""
+
+from __future__ import annotations
+
+from array import array
+from collections.abc import Callable
+
+import numpy as np
+from numpy.typing import NDArray
+
+from nispcodec.core.asset import FloatArray, TexturedMesh
+from nispcodec.core.errors import MeshError
+from nispcodec.io.folder import Folder
+from nispcodec.io.read import wavefront
+from nispcodec.io.read.obj_materials import MaterialReader
+from nispcodec.io.read.polygons import triangulate
+
+Indices = NDArray[np.int64]
+
+# Statements that carry nothing we could lose: normals, grouping, display.
+_SILENT = frozenset(
+    b"vn o g s mg lod shadow_obj trace_obj usemap maplib bevel c_interp d_interp".split()
+)
+_LARGEST_INDEX = 2**31 - 1
+
+
+def read_obj(data: bytes, name: str, folder: Folder) -> TexturedMesh:
+    """Parse an OBJ file, and the MTL files and images that it names.
+
+    Errors name the file `name` and the line. Faces may come before the vertices they use.
+    """
+    statements = _Statements(name)
+    statements.parse(data)
+    warnings = statements.warnings()
+    materials = MaterialReader(folder, warnings)
+    for line, reference in statements.libraries:
+        materials.open_library(reference, f"{name}:{line}")
+    return _assemble(statements, materials, warnings)
+
+
+class _Statements:
+    """The statements of one OBJ file, in flat arrays; indices count from 0, -1 stands for none."""
+
+    def __init__(self, name: str) -> None:
+        self.name = name
+        self.line = 0
+        self.positions = array("d")
+        self.uvs = array("d")
+        self.corners = array("q")
+        self.corner_uvs = array("q")
+        self.sizes = array("q")
+        self.face_lines = array("q")
+        self.face_materials = array("q")
+        self.materials: dict[str, int] = {}
+        self.libraries: list[tuple[int, str]] = []
+        self.left_out: dict[str, int] = {}
+        self._material = ""
+        # Most corners come up in several faces: half the parsing time saved.
+        self._known_corners: dict[bytes, tuple[int, int]] = {}
+
+    def parse(self, data: bytes) -> None:
+        handlers: dict[bytes, Callable[[bytes], None]] = {
+            b"v": self._position,
+            b"vt": self._uv,
+            b"f": self._face,
+            b"fo": self._face,
+            b"usemtl": self._use_material,
+            b"mtllib": self._library,
+        }
+        for self.line, line in wavefront.logical_lines(data):
+            keyword = line.split(None, 1)[0]
+            handler = handlers.get(keyword)
+            if handler is not None:
+                handler(line)
+            elif keyword not in _SILENT:
+                self._leave_out(f"statement {wavefront.text(keyword[:32])!r}")
+
+    def warnings(self) -> list[str]:
+        return [
+            f"{self.name}: left out {what}, first in line {line}"
+            for what, line in self.left_out.items()
+        ]
+
+    def _leave_out(self, what: str) -> None:
+        # A binary file under this name must not end in a million warnings.
+        if len(self.left_out) < 20:
+            self.left_out.setdefault(what, self.line)
+
+    def _place(self) -> str:
+        return f"{self.name}:{self.line}"
+
+    def _position(self, line: bytes) -> None:
+        words = line.split()
+        self.positions.extend(wavefront.numbers(words[1:], 3, self._place())[:3])
+        if len(words) > 6:
+            self._leave_out("vertex colours")
+
+    def _uv(self, line: bytes) -> None:
+        values = wavefront.numbers(line.split()[1:], 1, self._place())
+        self.uvs.extend(values[:2] if len(values) > 1 else (values[0], 0.0))
+
+    def _face(self, line: bytes) -> None:
+        words = line.split()[1:]
+        if len(words) < 3:
+            self._leave_out("faces of fewer than three corners")
+            return
+        for word in words:
+            position, uv = self._known_corners.get(word) or self._corner(word)
+            self.corners.append(position)
+            self.corner_uvs.append(uv)
+        self.sizes.append(len(words))
+        self.face_lines.append(self.line)
+        self.face_materials.append(self.materials.setdefault(self._material, len(self.materials)))
+
+    def _corner(self, word: bytes) -> tuple[int, int]:
+        """Position and UV of "1", "1/2", "1//3" or "1/2/3"; the normal is left out."""
+        parts = word.split(b"/")
+        position = self._index(parts[0], len(self.positions) // 3)
+        has_uv = len(parts) > 1 and parts[1]
+        corner = position, self._index(parts[1], len(self.uvs) // 2) if has_uv else -1
+        if b"-" not in word:  # what counts back means something else in each face
+            self._known_corners[word] = corner
+        return corner
+
+    def _index(self, word: bytes, count: int) -> int:
+        """From 0: positive words count from the file's start, negative ones back from here."""
+        try:
+            index = int(word)
+        except ValueError:
+            index = 0
+        if 0 < index <= _LARGEST_INDEX:
+            return index - 1
+        if -count <= index < 0:
+            return count + index
+        raise MeshError(
+            f"{self._place()}: expected an index from 1 up or from -1 down to -{count}, "
+            f"found {wavefront.text(word[:32])!r}"
+        )
+
+    def _use_material(self, line: bytes) -> None:
+        self._material = wavefront.rest(line)
+
+    def _library(self, line: bytes) -> None:
+        self.libraries.append((self.line, wavefront.rest(line)))
+
+
+def _assemble(
+    statements: _Statements, materials: MaterialReader, warnings: list[str]
+) -> TexturedMesh:
+    positions = _rows(statements.positions, 3)
+    uvs = _rows(statements.uvs, 2)
+    sizes = _integers(statements.sizes)
+    corners = _integers(statements.corners)
+    corner_uvs = _integers(statements.corner_uvs)
+    _expect_indices(statements, corners, len(positions), "vertex")
+    _expect_indices(statements, corner_uvs, len(uvs), "texture coordinate")
+    triangles, owner = triangulate(positions[corners], sizes)
+    return TexturedMesh(
+        positions=positions,
+        faces=corners[triangles].astype(np.int32),
+        uvs=uvs,
+        uv_faces=_whole_or_none(corner_uvs[triangles], warnings, statements.name),
+        face_materials=_integers(statements.face_materials)[owner].astype(np.int32),
+        materials=materials.materials(list(statements.materials)),
+        textures=tuple(materials.textures),
+        warnings=tuple(warnings),
+    )
+
+
+def _rows(values: array[float], columns: int) -> FloatArray:
+    return np.array(values, dtype=np.float64).reshape(-1, columns)
+
+
+def _integers(values: array[int]) -> Indices:
+    return np.array(values, dtype=np.int64)
+
+
+def _expect_indices(statements: _Statements, indices: Indices, count: int, what: str) -> None:
+    if not indices.size or indices.max() < count:
+        return
+    corner = int(np.argmax(indices >= count))
+    face = int(np.searchsorted(np.cumsum(_integers(statements.sizes)), corner, side="right"))
+    raise MeshError(
+        f"{statements.name}:{statements.face_lines[face]}: expected a {what} index up to {count}, "
+        f"found {indices[corner] + 1}"
+    )
+
+
+def _whole_or_none(uv_faces: Indices, warnings: list[str], name: str) -> NDArray[np.int32]:
+    """A face with UVs in some corners only has none."""
+    missing = uv_faces.min(axis=1, initial=0) < 0
+    partial = int((missing & (uv_faces.max(axis=1, initial=-1) >= 0)).sum())
+    if partial:
+        warnings.append(f"{name}: {partial} faces have texture coordinates in some corners only")
+    return np.where(missing[:, None], -1, uv_faces).astype(np.int32)

@@ -1,0 +1,292 @@
+"""PLY: polygons in text or binary, with UVs each vertex or each corner, and textures by name."""
+
+from __future__ import annotations
+
+import struct
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from pathlib import PurePath
+
+import numpy as np
+from numpy.typing import NDArray
+
+from nispcodec.core.asset import FloatArray, Material, Texture, TexturedMesh, TextureMap
+from nispcodec.core.errors import MeshError
+from nispcodec.io.folder import Folder
+from nispcodec.io.images import TextureShelf
+from nispcodec.io.read import wavefront
+from nispcodec.io.read.polygons import triangulate
+
+Indices = NDArray[np.int64]
+
+_TYPES = {
+    "char": "b", "int8": "b", "uchar": "B", "uint8": "B", "short": "h", "int16": "h",
+    "ushort": "H", "uint16": "H", "int": "i", "int32": "i", "uint": "I", "uint32": "I",
+    "float": "f", "float32": "f", "double": "d", "float64": "d",
+}  # fmt: skip
+_ORDERS = {"binary_little_endian": "<", "binary_big_endian": ">"}
+_UV_NAMES = (("s", "t"), ("u", "v"), ("texture_u", "texture_v"))
+
+
+@dataclass(frozen=True)
+class Property:
+    """A column: its struct code, and that of its count when it is a list."""
+
+    name: str
+    code: str
+    count_code: str = ""
+
+
+@dataclass
+class Element:
+    """A table of the file; scalar columns are lists of numbers, list columns lists of lists."""
+
+    name: str
+    count: int
+    properties: list[Property] = field(default_factory=list)
+    columns: dict[str, list[float]] = field(default_factory=dict)
+    lists: dict[str, list[Sequence[float]]] = field(default_factory=dict)
+
+
+@dataclass
+class Header:
+    """What a PLY header says; `size` is its length in bytes."""
+
+    format: str
+    elements: list[Element]
+    textures: list[str]
+    size: int
+
+
+def read_ply(data: bytes, name: str, folder: Folder) -> TexturedMesh:
+    """Parse a PLY file and the images that its TextureFile comments name."""
+    header = parse_header(data, name)
+    _read_elements(header, data, name)
+    elements = {element.name: element for element in header.elements}
+    vertex, face = elements.get("vertex"), elements.get("face")
+    if vertex is None or face is None:
+        raise MeshError(f"{name}: expected elements vertex and face, found {list(elements)}")
+    warnings: list[str] = []
+    if "red" in vertex.columns:
+        warnings.append(f"{name}: left out vertex colours")
+    materials, textures = _materials(header.textures, name, folder, warnings)
+    return _assembled(vertex, face, materials, textures, warnings, name)
+
+
+def parse_header(data: bytes, name: str) -> Header:
+    """Parse up to and with `end_header`; MeshError names the file and the line."""
+    end = data.find(b"end_header")
+    newline = data.find(b"\n", end)
+    if not data.startswith(b"ply") or end < 0 or newline < 0:
+        raise MeshError(f"{name}: expected a header from 'ply' to 'end_header', found none")
+    header = Header("", [], [], newline + 1)
+    for number, line in enumerate(data[:end].splitlines(), 1):
+        words = wavefront.text(line).split()
+        try:
+            _header_line(header, words, line)
+        except (ValueError, LookupError) as why:
+            shown = wavefront.text(line[:60])
+            raise MeshError(f"{name}:{number}: expected a PLY header, found {shown!r}") from why
+    if header.format != "ascii" and header.format not in _ORDERS:
+        raise MeshError(f"{name}: expected a PLY format, found {header.format!r}")
+    return header
+
+
+def _header_line(header: Header, words: list[str], line: bytes) -> None:
+    match words:
+        case ["format", found, "1.0"]:
+            header.format = found
+        case ["comment", "TextureFile", _, *_]:
+            header.textures.append(wavefront.rest(line, 2))
+        case ["element", found, count]:
+            if not 0 <= int(count) < 2**31:
+                raise ValueError(count)
+            header.elements.append(Element(found, int(count)))
+        case ["property", "list", count, item, found]:
+            header.elements[-1].properties.append(Property(found, _TYPES[item], _TYPES[count]))
+        case ["property", item, found]:
+            header.elements[-1].properties.append(Property(found, _TYPES[item]))
+        case ["ply"] | ["comment", *_] | ["obj_info", *_] | []:
+            pass
+        case _:
+            raise ValueError(words)
+
+
+class _Text:
+    """The body of a text file as a queue of numbers."""
+
+    def __init__(self, body: bytes) -> None:
+        self._words = body.split()
+        self._at = 0
+
+    def take(self, codes: str) -> Sequence[float]:
+        words = self._words[self._at : self._at + len(codes)]
+        self._at += len(codes)
+        if len(words) < len(codes):
+            raise ValueError("the end of the file")
+        return [float(word) for word in words]
+
+
+class _Binary:
+    """The body of a binary file as a queue of numbers."""
+
+    def __init__(self, body: bytes, order: str) -> None:
+        self._body = body
+        self._order = order
+        self._at = 0
+
+    def take(self, codes: str) -> Sequence[float]:
+        layout = self._order + codes
+        size = struct.calcsize(layout)
+        if self._at + size > len(self._body):
+            raise ValueError("the end of the file")
+        values = struct.unpack_from(layout, self._body, self._at)
+        self._at += size
+        return values
+
+
+def _read_elements(header: Header, data: bytes, name: str) -> None:
+    body = data[header.size :]
+    order = _ORDERS.get(header.format)
+    take = (_Text(body) if order is None else _Binary(body, order)).take
+    for element in header.elements:
+        for row in range(element.count if element.properties else 0):
+            try:
+                _read_row(element, take)
+            except (ValueError, OverflowError) as why:
+                raise MeshError(
+                    f"{name}: {element.name} {row}: expected numbers as in the header, found: {why}"
+                ) from why
+
+
+def _read_row(element: Element, take: Callable[[str], Sequence[float]]) -> None:
+    if not any(column.count_code for column in element.properties):
+        values = take("".join(column.code for column in element.properties))
+        for column, value in zip(element.properties, values, strict=True):
+            element.columns.setdefault(column.name, []).append(value)
+        return
+    for column in element.properties:
+        if not column.count_code:
+            element.columns.setdefault(column.name, []).append(take(column.code)[0])
+            continue
+        count = int(take(column.count_code)[0])
+        if not 0 <= count < 2**16:
+            raise ValueError(f"a list of {count}")
+        element.lists.setdefault(column.name, []).append(take(column.code * count))
+
+
+def _materials(
+    files: Sequence[str], name: str, folder: Folder, warnings: list[str]
+) -> tuple[tuple[Material, ...], tuple[Texture, ...]]:
+    """One material a texture file, or a plain one."""
+    shelf = TextureShelf(warnings)
+    materials = []
+    for file in files:
+        path = folder.find(file)
+        texture = None if path is None else shelf.add(path.name, folder.read(path), str(path))
+        maps = {} if texture is None else {"base_color": TextureMap(texture)}
+        materials.append(Material(name=PurePath(file).stem or "material", maps=maps))
+        if path is None:
+            warnings.append(f"{name}: image {file!r} not found")
+    return tuple(materials) or (Material(),), tuple(shelf.textures)
+
+
+def _assembled(
+    vertex: Element,
+    face: Element,
+    materials: tuple[Material, ...],
+    textures: tuple[Texture, ...],
+    warnings: list[str],
+    name: str,
+) -> TexturedMesh:
+    positions = _columns(vertex, ("x", "y", "z"), name)
+    polygons = face.lists.get("vertex_indices") or face.lists.get("vertex_index") or []
+    sizes = np.array([len(polygon) for polygon in polygons], dtype=np.int64)
+    if sizes.size and sizes.min() < 3:
+        raise MeshError(f"{name}: face {int(sizes.argmin())}: expected three corners or more")
+    corners = _flat_indices(polygons, len(positions), name)
+    triangles, owner = triangulate(positions[corners], sizes)
+    uvs, corner_uvs = _uvs(vertex, face, corners, sizes, name)
+    numbers = _face_materials(face, len(sizes), len(materials), name)
+    return TexturedMesh(
+        positions=positions,
+        faces=corners[triangles].astype(np.int32),
+        uvs=uvs,
+        uv_faces=corner_uvs[triangles].astype(np.int32),
+        face_materials=numbers[owner].astype(np.int32),
+        materials=materials,
+        textures=textures,
+        warnings=tuple(warnings),
+    )
+
+
+def _columns(vertex: Element, names: tuple[str, ...], name: str) -> FloatArray:
+    """(n, len(names)) finite numbers."""
+    missing = [column for column in names if column not in vertex.columns]
+    if missing and vertex.count:
+        raise MeshError(f"{name}: expected vertex properties {names}, found none of {missing}")
+    table = [vertex.columns.get(column, []) for column in names]
+    values = np.array(table, dtype=np.float64).reshape(len(names), -1).T
+    finite = np.isfinite(values).all(axis=1)
+    if not finite.all():
+        row = int(finite.argmin())
+        raise MeshError(
+            f"{name}: vertex {row}: expected finite {names}, found {values[row].tolist()}"
+        )
+    return np.ascontiguousarray(values)
+
+
+def _flat_indices(polygons: Sequence[Sequence[float]], count: int, name: str) -> Indices:
+    flat = np.array([index for polygon in polygons for index in polygon], dtype=np.float64)
+    wrong = ~((flat >= 0) & (flat < count) & (flat == np.floor(flat)))
+    if wrong.any():
+        corner = int(wrong.argmax())
+        ends = np.cumsum([len(polygon) for polygon in polygons])
+        face = int(np.searchsorted(ends, corner, side="right"))
+        raise MeshError(
+            f"{name}: face {face}: expected vertex indices below {count}, found {flat[corner]:g}"
+        )
+    return flat.astype(np.int64)
+
+
+def _uvs(
+    vertex: Element, face: Element, corners: Indices, sizes: Indices, name: str
+) -> tuple[FloatArray, Indices]:
+    """UVs and each corner's index: the faces' own where they have them, else the vertices'."""
+    listed = face.lists.get("texcoord")
+    if listed is not None:
+        return _corner_uvs(listed, sizes, name)
+    for names in _UV_NAMES:
+        if set(names) <= set(vertex.columns):
+            return _columns(vertex, names, name), corners
+    return np.zeros((0, 2)), np.full(len(corners), -1)
+
+
+def _corner_uvs(
+    listed: Sequence[Sequence[float]], sizes: Indices, name: str
+) -> tuple[FloatArray, Indices]:
+    """A face without as many UVs as corners must have none."""
+    lengths = np.array([len(values) for values in listed], dtype=np.int64)
+    wrong = (lengths != 2 * sizes) & (lengths != 0)
+    flat = np.array([value for values in listed for value in values], dtype=np.float64)
+    if wrong.any():
+        face = int(wrong.argmax())
+        raise MeshError(
+            f"{name}: face {face}: expected {2 * sizes[face]} texture coordinates, "
+            f"found {lengths[face]}"
+        )
+    if not np.isfinite(flat).all():
+        raise MeshError(f"{name}: expected finite texture coordinates, found NaN or infinity")
+    has_uv = np.repeat(lengths > 0, sizes)
+    return flat.reshape(-1, 2), np.where(has_uv, np.cumsum(has_uv) - 1, -1)
+
+
+def _face_materials(face: Element, faces: int, materials: int, name: str) -> Indices:
+    """MeshLab numbers the textures; -1, no texture, counts as the first."""
+    numbers = face.columns.get("texnumber")
+    if numbers is None:
+        return np.zeros(faces, dtype=np.int64)
+    chosen = np.maximum(np.array(numbers, dtype=np.float64), 0)
+    if not (chosen < materials).all():
+        raise MeshError(f"{name}: expected texnumbers below {materials}, found {chosen.max():g}")
+    return chosen.astype(np.int64)

@@ -1,0 +1,54 @@
+"""Mesh files: `write_mesh` picks the writer by the path's suffix."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+from nispcodec.core.asset import TexturedMesh
+from nispcodec.core.atomic_write import write_atomic
+from nispcodec.core.errors import MeshError
+from nispcodec.io.write.colors import Colors, untextured
+from nispcodec.io.write.glb import glb_bytes
+from nispcodec.io.write.obj import obj_files
+from nispcodec.io.write.ply import ply_bytes
+from nispcodec.io.write.stl import stl_bytes
+
+SINGLE: dict[str, Callable[[TexturedMesh, Colors | None], bytes]] = {
+    ".glb": glb_bytes,
+    ".ply": ply_bytes,
+    ".stl": stl_bytes,
+}
+SUFFIXES = (*SINGLE, ".obj")
+
+
+def write_mesh(mesh: TexturedMesh, path: Path, colors: Colors | None = None) -> list[Path]:
+    """Write the mesh in the format of the path's suffix -> the files written, `path` last.
+
+    An OBJ puts its MTL and images beside it. Each file is written under another name and then
+    renamed. `colors` (n, 4), sRGB-encoded in [0, 1], one a position, take the place of UVs,
+    materials and textures. Raises MeshError for an unknown suffix, no faces, colours that do not
+    fit or that the format cannot hold; NispError when writing fails.
+    """
+    path = Path(path)
+    if not len(mesh.faces):
+        raise MeshError(f"{path}: expected a mesh with faces, found none")
+    written = []
+    if colors is not None:
+        mesh = untextured(mesh, colors)
+    for name, data in _files(mesh, path, colors).items():
+        written.append(path.with_name(name))
+        write_atomic(written[-1], data)
+    return written
+
+
+def _files(mesh: TexturedMesh, path: Path, colors: Colors | None) -> dict[str, bytes]:
+    suffix = path.suffix.lower()
+    if suffix == ".obj":
+        files = obj_files(mesh, path.stem, colors)
+        files[path.name] = files.pop(f"{path.stem}.obj")
+        return files
+    if suffix not in SINGLE:
+        found = repr(path.suffix) if path.suffix else "none"
+        raise MeshError(f"{path}: expected a suffix of {', '.join(SUFFIXES)}, found {found}")
+    return {path.name: SINGLE[suffix](mesh, colors)}

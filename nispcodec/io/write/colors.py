@@ -1,0 +1,30 @@
+"""Meshes with a colour at each vertex instead of textures."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from nispcodec.core.asset import Material, TexturedMesh
+from nispcodec.core.errors import MeshError
+
+# (n, 4) float32 RGBA in [0, 1], one row a position of the mesh; RGB sRGB-encoded.
+Colors = NDArray[np.float32]
+
+
+def untextured(mesh: TexturedMesh, colors: Colors) -> TexturedMesh:
+    """The mesh with one plain material, ready to carry colours; MeshError if they do not fit."""
+    if colors.shape != (len(mesh.positions), 4):
+        raise MeshError(f"colors: expected shape ({len(mesh.positions)}, 4), found {colors.shape}")
+    blended = bool((colors[:, 3] < 1).any())
+    material = Material("vertex colours", alpha_mode="blend" if blended else "opaque")
+    return replace(
+        mesh,
+        uvs=np.zeros((0, 2)),
+        uv_faces=np.full_like(mesh.uv_faces, -1),
+        face_materials=np.zeros_like(mesh.face_materials),
+        materials=(material,),
+        textures=(),
+    )

@@ -1,0 +1,198 @@
+"""GLB (glTF 2.0 binary): one primitive a material, the original image bytes embedded."""
+
+from __future__ import annotations
+
+import json
+import struct
+from collections.abc import Iterable
+from io import BytesIO
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from nispcodec.core.asset import Material, Texture, TexturedMesh, TextureMap
+from nispcodec.core.texture import srgb_to_linear
+from nispcodec.io.write.colors import Colors
+from nispcodec.io.write.vertices import origin, split_vertices, vertex_normals
+
+Json = dict[str, Any]
+
+FLOAT, UINT32 = 5126, 5125
+ARRAY_BUFFER, ELEMENT_ARRAY_BUFFER = 34962, 34963
+WRAPS = {"repeat": 10497, "clamp": 33071, "mirror": 33648}
+FILTERS = {"linear": (9729, 9987), "nearest": (9728, 9984)}
+WEBP = "EXT_texture_webp"
+
+
+def glb_bytes(mesh: TexturedMesh, colors: Colors | None = None) -> bytes:
+    """The mesh as the bytes of a GLB file: V is flipped to glTF's top-left origin.
+
+    A mesh far from the origin gets its place from its node, not from its float32 coordinates.
+    Colours (n, 4), sRGB-encoded, become COLOR_0 in linear light.
+    """
+    return _Builder(colors).build(mesh)
+
+
+class _Builder:
+    """Collects the JSON tree and the binary buffer that it points into."""
+
+    def __init__(self, colors: Colors | None) -> None:
+        self.colors = colors
+        self.buffer = bytearray()
+        self.tree: Json = {"asset": {"version": "2.0", "generator": "nispcodec"}}
+        self.images: dict[int, int] = {}
+        self.origin = np.zeros(3)
+
+    def build(self, mesh: TexturedMesh) -> bytes:
+        self.origin = origin(mesh)
+        normals = vertex_normals(mesh)
+        primitives = [
+            self.primitive(mesh, faces, normals, material, has_uv)
+            for material, has_uv, faces in _groups(mesh)
+        ]
+        self.tree["scene"] = self.add("scenes", {"nodes": [0]})
+        node: Json = {"mesh": 0, "name": mesh.name}
+        if self.origin.any():
+            node["translation"] = self.origin.tolist()
+        self.add("nodes", node)
+        self.add("meshes", {"primitives": primitives, "name": mesh.name})
+        self.pad(b"\0")
+        self.tree["buffers"] = [{"byteLength": len(self.buffer)}]
+        return _container(self.tree, bytes(self.buffer))
+
+    def add(self, kind: str, item: Json) -> int:
+        """Index of the item in the tree's list of that kind; equal items are stored once."""
+        items: list[Json] = self.tree.setdefault(kind, [])
+        if item not in items:
+            items.append(item)
+        return items.index(item)
+
+    def pad(self, filler: bytes) -> None:
+        self.buffer += filler * (-len(self.buffer) % 4)
+
+    def view(self, data: bytes, target: int | None = None) -> int:
+        self.pad(b"\0")
+        view: Json = {"buffer": 0, "byteOffset": len(self.buffer), "byteLength": len(data)}
+        if target:
+            view["target"] = target
+        self.buffer += data
+        return self.add("bufferViews", view)
+
+    def accessor(self, array: NDArray[np.generic], kind: str, target: int) -> int:
+        accessor: Json = {
+            "bufferView": self.view(array.tobytes(), target),
+            "componentType": FLOAT if array.dtype == np.float32 else UINT32,
+            "count": array.size if kind == "SCALAR" else len(array),
+            "type": kind,
+        }
+        return self.add("accessors", accessor)
+
+    def primitive(
+        self,
+        mesh: TexturedMesh,
+        faces: NDArray[np.intp],
+        normals: NDArray[np.float32],
+        material: int,
+        has_uv: bool,
+    ) -> Json:
+        vertices = split_vertices(mesh, faces)
+        near = (vertices.positions - self.origin).astype(np.float32)
+        positions = self.accessor(near, "VEC3", ARRAY_BUFFER)
+        limits = {"min": near.min(axis=0).tolist(), "max": near.max(axis=0).tolist()}
+        self.tree["accessors"][positions] |= limits
+        vertex_normal = self.accessor(normals[vertices.sources], "VEC3", ARRAY_BUFFER)
+        attributes = {"POSITION": positions, "NORMAL": vertex_normal}
+        if has_uv:
+            flipped = np.column_stack([vertices.uvs[:, 0], 1 - vertices.uvs[:, 1]])
+            attributes["TEXCOORD_0"] = self.accessor(flipped, "VEC2", ARRAY_BUFFER)
+        if self.colors is not None:
+            linear = self.colors[vertices.sources]
+            linear[:, :3] = srgb_to_linear(linear[:, :3])
+            attributes["COLOR_0"] = self.accessor(linear, "VEC4", ARRAY_BUFFER)
+        return {
+            "attributes": attributes,
+            "indices": self.accessor(vertices.faces, "SCALAR", ELEMENT_ARRAY_BUFFER),
+            "material": self.material(mesh.materials[material], mesh.textures, has_uv),
+        }
+
+    def material(self, material: Material, textures: tuple[Texture, ...], has_uv: bool) -> int:
+        pbr: Json = {
+            "baseColorFactor": list(material.base_color),
+            "metallicFactor": material.metallic,
+            "roughnessFactor": material.roughness,
+        }
+        item: Json = {
+            "name": material.name,
+            "pbrMetallicRoughness": pbr,
+            "emissiveFactor": list(material.emissive),
+            "alphaMode": material.alpha_mode.upper(),
+            "doubleSided": material.double_sided,
+        }
+        if material.alpha_mode == "mask":
+            item["alphaCutoff"] = material.alpha_cutoff
+        # A face without UV cannot look anything up: its material keeps the factors only.
+        for slot, used in material.maps.items() if has_uv else ():
+            name, parent = _slot(slot, pbr, item)
+            parent[name] = self.texture(textures, used) | _strength(slot, used)
+        return self.add("materials", item)
+
+    def texture(self, textures: tuple[Texture, ...], used: TextureMap) -> Json:
+        magnify, minify = FILTERS[used.filter]
+        wrap_s, wrap_t = (WRAPS[wrap] for wrap in used.wrap)
+        sampler = {"magFilter": magnify, "minFilter": minify, "wrapS": wrap_s, "wrapT": wrap_t}
+        texture = textures[used.texture]
+        item: Json = {"sampler": self.add("samplers", sampler)}
+        image = self.image(used.texture, texture)
+        if texture.mime == "image/webp":
+            item["extensions"] = {WEBP: {"source": image}}
+            self.tree["extensionsUsed"] = self.tree["extensionsRequired"] = [WEBP]
+        else:
+            item["source"] = image
+        return {"index": self.add("textures", item)}
+
+    def image(self, number: int, texture: Texture) -> int:
+        if number not in self.images:
+            data, mime = _embeddable(texture)
+            item = {"name": texture.name, "mimeType": mime, "bufferView": self.view(data)}
+            self.images[number] = self.add("images", item)
+        return self.images[number]
+
+
+def _groups(mesh: TexturedMesh) -> Iterable[tuple[int, bool, NDArray[np.intp]]]:
+    keys = mesh.face_materials * 2 + mesh.has_uv
+    for key in np.unique(keys).tolist():
+        yield key // 2, bool(key % 2), np.flatnonzero(keys == key)
+
+
+def _slot(slot: str, pbr: Json, item: Json) -> tuple[str, Json]:
+    if slot == "base_color":
+        return "baseColorTexture", pbr
+    if slot == "metallic_roughness":
+        return "metallicRoughnessTexture", pbr
+    return f"{slot}Texture", item
+
+
+def _strength(slot: str, used: TextureMap) -> Json:
+    names = {"normal": "scale", "occlusion": "strength"}
+    return {names[slot]: used.strength} if slot in names and used.strength != 1 else {}
+
+
+def _embeddable(texture: Texture) -> tuple[bytes, str]:
+    """Bytes and type of an image as glTF readers know them: AVIF becomes PNG."""
+    if texture.mime != "image/avif":
+        return texture.data, texture.mime
+    from PIL import Image
+
+    converted = BytesIO()
+    with Image.open(BytesIO(texture.data)) as image:
+        image.save(converted, "PNG")
+    return converted.getvalue(), "image/png"
+
+
+def _container(tree: Json, binary: bytes) -> bytes:
+    text = json.dumps(tree, separators=(",", ":")).encode()
+    text += b" " * (-len(text) % 4)
+    chunks = struct.pack("<I4s", len(text), b"JSON") + text
+    chunks += struct.pack("<I4s", len(binary), b"BIN\0") + binary
+    return struct.pack("<4sII", b"glTF", 2, 12 + len(chunks)) + chunks

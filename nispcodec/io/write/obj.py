@@ -1,0 +1,113 @@
+"""OBJ with its MTL and images: files named after the output, so that no other file is touched."""
+
+from __future__ import annotations
+
+import math
+import re
+
+import numpy as np
+from numpy.typing import NDArray
+
+from nispcodec.core.asset import Material, TexturedMesh, TextureMap
+from nispcodec.io.write.colors import Colors
+
+# Occlusion and metallic-roughness share one image in glTF; MTL has no words for that.
+KEYWORDS = {
+    "base_color": ("map_Kd",),
+    "normal": ("norm", "map_Bump"),
+    "emissive": ("map_Ke",),
+}
+
+
+def obj_files(mesh: TexturedMesh, stem: str, colors: Colors | None = None) -> dict[str, bytes]:
+    """File name -> bytes of STEM.obj, STEM.mtl and one STEM_NAME for every texture in use.
+
+    Colours (n, 4) stand behind the positions, as many tools read them, without alpha; then there
+    is no MTL.
+    Occlusion and metallic-roughness maps are left out, and images used by nothing else with them.
+    """
+    if colors is not None:
+        return {f"{stem}.obj": _colored_obj(mesh, colors).encode()}
+    images = [f"{stem}_{name}" for name in _unique([_plain(t.name) for t in mesh.textures])]
+    names = _unique([_plain(material.name) for material in mesh.materials])
+    slots = [slots for material in mesh.materials for slots in material.maps.items()]
+    wanted = {used.texture for slot, used in slots if slot in KEYWORDS}
+    files = {images[index]: mesh.textures[index].data for index in sorted(wanted)}
+    materials = zip(mesh.materials, names, strict=True)
+    mtl = "\n".join(_mtl(material, name, images) for material, name in materials)
+    return files | {
+        f"{stem}.mtl": mtl.encode(),
+        f"{stem}.obj": _obj(mesh, f"{stem}.mtl", names).encode(),
+    }
+
+
+def _obj(mesh: TexturedMesh, library: str, names: list[str]) -> str:
+    parts = [f"mtllib {library}\no {_plain(mesh.name)}\n"]
+    parts.append(_rows(f"v {_decimals(mesh)}\n", mesh.positions))
+    parts.append(_rows("vt %.7g %.7g\n", mesh.uvs))
+    for material in np.unique(mesh.face_materials).tolist():
+        parts.append(f"usemtl {names[material]}\n")
+        chosen = mesh.face_materials == material
+        with_uv, without = chosen & mesh.has_uv, chosen & ~mesh.has_uv
+        both = np.stack([mesh.faces[with_uv], mesh.uv_faces[with_uv]], axis=2) + 1
+        parts.append(_rows("f %d/%d %d/%d %d/%d\n", both))
+        parts.append(_rows("f %d %d %d\n", mesh.faces[without] + 1))
+    return "".join(parts)
+
+
+def _colored_obj(mesh: TexturedMesh, colors: Colors) -> str:
+    vertices = np.hstack([mesh.positions, colors[:, :3]])
+    return (
+        f"o {_plain(mesh.name)}\n"
+        + _rows(f"v {_decimals(mesh)} %.4g %.4g %.4g\n", vertices)
+        + _rows("f %d %d %d\n", mesh.faces + 1)
+    )
+
+
+def _decimals(mesh: TexturedMesh) -> str:
+    """The pattern of a position: seven digits of the mesh's extent, wherever it lies."""
+    extent = float(np.ptp(mesh.positions, axis=0).max()) or 1.0
+    return " ".join([f"%.{max(0, 7 - math.floor(math.log10(extent)))}f"] * 3)
+
+
+def _rows(pattern: str, values: NDArray[np.generic]) -> str:
+    return (pattern * len(values)) % tuple(values.ravel().tolist())
+
+
+def _mtl(material: Material, name: str, images: list[str]) -> str:
+    lines = [
+        f"newmtl {name}",
+        "Kd {:.6g} {:.6g} {:.6g}".format(*material.base_color[:3]),
+        f"d {material.base_color[3]:.6g}",
+        f"Pm {material.metallic:.6g}",
+        f"Pr {material.roughness:.6g}",
+        "Ke {:.6g} {:.6g} {:.6g}".format(*material.emissive),
+    ]
+    for slot, used in material.maps.items():
+        lines += [_map(keyword, used, images) for keyword in KEYWORDS.get(slot, ())]
+    return "\n".join(lines) + "\n"
+
+
+def _map(keyword: str, used: TextureMap, images: list[str]) -> str:
+    options = " -clamp on" if used.wrap == ("clamp", "clamp") else ""
+    if keyword in KEYWORDS["normal"] and used.strength != 1:
+        options += f" -bm {used.strength:.6g}"
+    return f"{keyword}{options} {images[used.texture]}"
+
+
+def _plain(name: str) -> str:
+    """The name with nothing that ends a word or a path in an OBJ or MTL file."""
+    return re.sub(r"[^\w.-]+", "_", name).lstrip(".") or "unnamed"
+
+
+def _unique(names: list[str]) -> list[str]:
+    """Equal names told apart (also where upper and lower case are one) by a number in front."""
+    seen: set[str] = set()
+    result = []
+    for name in names:
+        candidate, number = name, 2
+        while candidate.lower() in seen:
+            candidate, number = f"{number}_{name}", number + 1
+        seen.add(candidate.lower())
+        result.append(candidate)
+    return result

@@ -1,0 +1,62 @@
+"""From indexed positions and UVs to the single vertices that GLB and PLY want."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from nispcodec.core.asset import TexturedMesh
+
+# Farther from the origin than this many times its extent, a mesh does not survive float32.
+FAR = 100
+
+
+@dataclass(frozen=True)
+class Vertices:
+    """positions (n, 3) float64, uvs (n, 2) float32 with origin bottom-left, faces (m, 3) uint32.
+
+    sources (n,) int64 are the vertices' indices into the mesh's positions.
+    """
+
+    positions: NDArray[np.float64]
+    uvs: NDArray[np.float32]
+    faces: NDArray[np.uint32]
+    sources: NDArray[np.int64]
+
+
+def split_vertices(mesh: TexturedMesh, faces: NDArray[np.intp]) -> Vertices:
+    """One vertex for each pair of position and UV that `faces` (indices into mesh.faces) use."""
+    pairs = mesh.faces[faces].astype(np.int64) << 32 | (mesh.uv_faces[faces].astype(np.int64) + 1)
+    keys, inverse = np.unique(pairs, return_inverse=True)
+    sources = keys >> 32
+    padded = np.vstack([np.zeros((1, 2)), mesh.uvs])
+    return Vertices(
+        positions=mesh.positions[sources],
+        uvs=padded[keys & 0xFFFFFFFF].astype(np.float32),
+        faces=inverse.reshape(-1, 3).astype(np.uint32),
+        sources=sources,
+    )
+
+
+def vertex_normals(mesh: TexturedMesh) -> NDArray[np.float32]:
+    """Area-weighted unit normals of the mesh's positions (n, 3); up where they cancel out."""
+    a, b, c = mesh.corners.transpose(1, 0, 2)
+    weighted = np.cross(b - a, c - a)
+    normals = np.empty_like(mesh.positions)
+    for axis in range(3):
+        normals[:, axis] = np.bincount(
+            mesh.faces.ravel(), np.repeat(weighted[:, axis], 3), minlength=len(normals)
+        )
+    lengths = np.linalg.norm(normals, axis=1, keepdims=True)
+    up = np.tile([0.0, 0.0, 1.0], (len(normals), 1))
+    np.divide(normals, lengths, out=up, where=lengths > 0)
+    return up.astype(np.float32)
+
+
+def origin(mesh: TexturedMesh) -> NDArray[np.float64]:
+    """Where the zero of float32 coordinates belongs: (3,), all 0 unless the mesh is far away."""
+    low, high = mesh.positions.min(axis=0), mesh.positions.max(axis=0)
+    far = np.abs(mesh.positions).max() > FAR * (high - low).max()
+    return (low + high) / 2 if far else np.zeros(3)

@@ -1,0 +1,162 @@
+"""A decoded asset as something to ask: distance, normal, chart, UV, colour at any point; a mesh."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from nispcodec.core.asset import TexturedMesh
+from nispcodec.core.document import Document
+from nispcodec.core.errors import QueryError
+from nispcodec.infer.evaluate import classify, evaluate, gradient
+
+Floats = NDArray[np.float32]
+Integers = NDArray[np.int32]
+
+FRAMES = ("world", "normalised")
+PROJECTION_STEPS = 8
+FAR = 1e6
+
+
+class NispModel:
+    """One asset, queryable at any point.
+
+    Queries take points (n, 3), any n, in the frame named by `frame`: "world" (the asset's own
+    units) or "normalised". They raise QueryError for a wrong shape, NaN, infinity, points more
+    than a million radii away, or an unknown frame. Work is done in blocks on every core, so memory
+    is bounded beyond input and output.
+    """
+
+    def __init__(self, document: Document) -> None:
+        self.document = document
+        self._images: dict[int, Floats] = {}
+
+    def sdf(self, points: ArrayLike, frame: str = "world") -> Floats:
+        """Signed distance to the surface (n,) float32, negative inside, in the units of `frame`."""
+        scale = np.float32(self.document.frame.radius if frame == "world" else 1)
+        values: Floats = evaluate(self.document.sdf, self._normalised(points, frame))[:, 0]
+        values *= scale
+        return values
+
+    def normals(self, points: ArrayLike, frame: str = "world") -> Floats:
+        """Unit gradient of the SDF (n, 3) float32, pointing outwards; 0 where the SDF is flat."""
+        _, slopes = gradient(self.document.sdf, self._normalised(points, frame))
+        lengths = np.linalg.norm(slopes, axis=1, keepdims=True)
+        units = np.zeros_like(slopes)
+        np.divide(slopes, lengths, out=units, where=lengths > 0)
+        return units
+
+    def charts(self, points: ArrayLike, frame: str = "world") -> Integers:
+        """The chart that each point belongs to (n,) int32, into `document.charts`."""
+        return self._charts(self._normalised(points, frame))
+
+    @property
+    def chart_materials(self) -> Integers:
+        """The material of each chart (k,) int32, into the document's materials."""
+        return self.document.charts.materials
+
+    def uv(
+        self, points: ArrayLike, frame: str = "world", charts: NDArray[np.integer] | None = None
+    ) -> Floats:
+        """Texture coordinates (n, 2) float32, origin bottom-left, in the asset's UV range.
+
+        `charts` (n,) overrides the predicted charts. Points on charts without UV get (0, 0).
+        """
+        normalised = self._normalised(points, frame)
+        return self._uv(normalised, self._charts(normalised) if charts is None else charts)
+
+    def color(self, points: ArrayLike, frame: str = "world") -> Floats:
+        """Base colour (n, 4) float32 RGBA in [0, 1]: RGB is sRGB-encoded, alpha linear.
+
+        The base colour texture at the point's UV, filtered and wrapped as its material says, times
+        the material's factor; the factor alone where there is no texture or no UV. Openings have no
+        colour: points there get that of the likeliest chart of the asset.
+        """
+        normalised = self._normalised(points, frame)
+        charts = self._charts(normalised, len(self.document.charts) - self.document.charts.openings)
+        uvs = self._uv(normalised, charts)
+        table = self.document.charts
+        # A face without UV looks nothing up: its material shows its factor, key -1 - material.
+        keys = np.where(table.has_uv, table.materials, -1 - table.materials)[charts]
+        colors = np.empty((len(normalised), 4), np.float32)
+        for key in np.unique(keys).tolist():
+            colors[keys == key] = self._base_color(key, uvs[keys == key])
+        return colors
+
+    def project(self, points: ArrayLike, frame: str = "world") -> NDArray[np.float64]:
+        """The points moved along the gradient onto the surface (n, 3) float64, in `frame`.
+
+        Newton steps on the fitted field: exact near the surface, approximate far from it.
+        """
+        moved = self._normalised(points, frame)
+        for _ in range(PROJECTION_STEPS):
+            values, slopes = gradient(self.document.sdf, moved)
+            steepness = np.maximum((slopes * slopes).sum(axis=1, keepdims=True), 0.25)
+            moved = moved - values[:, None] * slopes / steepness
+        if frame == "world":
+            return self.document.frame.to_world(moved)
+        return moved.astype(np.float64)
+
+    def to_mesh(
+        self,
+        resolution: int | None = None,
+        faces: int | None = None,
+        error: float | None = None,
+        keep_spurious: bool = False,
+    ) -> TexturedMesh:
+        """The surface as a textured mesh in the world frame.
+
+        `resolution`: cells along the edge of the cube that is extracted; default 256, up to 512
+        where walls are thin, more for thin sheets. `faces`: the most triangles to
+        return; the surface is simplified to fit. `error`: as few triangles as keep the mean
+        distance to the field's surface below it, normalised frame. `keep_spurious` keeps the
+        components that are recognised as noise of the field; a warning of the mesh counts those
+        that were dropped.
+        """
+        from nispcodec.extract.meshing import textured_mesh
+
+        return textured_mesh(self.document, resolution, faces, error, keep_spurious)[0]
+
+    def _charts(self, normalised: Floats, among: int | None = None) -> Integers:
+        network = self.document.chart
+        if network is None:
+            return np.zeros(len(normalised), np.int32)
+        return classify(network, normalised, among)
+
+    def _uv(self, normalised: Floats, charts: NDArray[np.integer]) -> Floats:
+        from nispcodec.infer.texture_coordinates import asset_uv
+
+        return asset_uv(self.document, normalised, charts)
+
+    def _base_color(self, key: int, uvs: Floats) -> Floats:
+        from nispcodec.core.texture import base_color
+
+        material = self.document.materials[key if key >= 0 else -1 - key]
+        used = material.maps.get("base_color") if key >= 0 else None
+        image = None if used is None else self._image(used.texture)
+        return base_color(material, image, uvs)
+
+    def _image(self, texture: int) -> Floats:
+        from nispcodec.core.texture import decode_image
+
+        if texture not in self._images:
+            self._images[texture] = decode_image(self.document.textures[texture])
+        return self._images[texture]
+
+    def _normalised(self, points: ArrayLike, frame: str) -> Floats:
+        if frame not in FRAMES:
+            raise QueryError(f"frame: expected one of {', '.join(FRAMES)}, found {frame!r}")
+        array = np.asarray(points)
+        if array.ndim != 2 or array.shape[1] != 3 or array.dtype.kind not in "fiu":
+            raise QueryError(
+                f"points: expected numbers of shape (n, 3), found {array.dtype} of {array.shape}"
+            )
+        normalised = self.document.frame.to_normalised(array) if frame == "world" else array
+        near = (np.abs(normalised) < FAR).all(axis=1)
+        if not near.all():
+            row = int(np.argmin(near))
+            raise QueryError(
+                f"points: expected finite numbers within {FAR:g} radii of the asset, "
+                f"found {array[row].tolist()} in row {row}"
+            )
+        return normalised.astype(np.float32)

@@ -1,0 +1,1 @@
+"""Assets made on the spot, for demonstrations and tests."""

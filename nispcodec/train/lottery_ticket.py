@@ -1,0 +1,73 @@
+"""Lottery tickets: train, prune, rewind, train again (Frankle and Carbin 2019; paper, section 4.3).
+
+All rounds have one seed, so that each of them starts from the same initial weights.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import AbstractContextManager
+from dataclasses import replace
+
+from nispcodec.core.errors import FitError
+from nispcodec.core.network import Network
+from nispcodec.core.progress import Listener, Progress
+from nispcodec.train.loop import train
+from nispcodec.train.prune import STRATEGIES, Mask, everything
+from nispcodec.train.task import Task
+
+
+def fit(
+    task: Task, seed: int, device: str, core: AbstractContextManager[object], listen: Listener
+) -> Network:
+    """`train`, in as many rounds as the task's pruning has, and one more before any is pruned.
+
+    Only the last round rounds the weights: how large they are tells more before.
+    Raises FitError when nothing is left of a matrix, which would leave a constant.
+    """
+    if task.pruning is None:
+        return train(task, seed, device, core, listen)
+    rates = task.pruning.rates
+    heard = _rounds(listen, len(rates) + 1)
+
+    def trained(mask: Mask, rate: float) -> Network:
+        for name, kept in mask.items():
+            if not kept.any():
+                raise FitError(
+                    f"{task.name} network: nothing is left of {name}: expected a lower prune rate "
+                    f"than {rates[-1]:g}, or another strategy than smallest_global"
+                )
+        this = task if rate == rates[-1] else replace(task, rounding=None)
+        return train(this, seed, device, core, next(heard), mask)
+
+    *_, network = tickets(task, task.pruning.strategy, rates, trained)
+    return network
+
+
+def tickets(
+    task: Task, strategy: str, rates: Sequence[float], trained: Callable[[Mask, float], Network]
+) -> Iterator[Network]:
+    """The network unpruned and at every one of some rising rates, each `trained(mask, rate)`."""
+    mask = everything(task.spec)
+    first = latest = trained(mask, 0.0)
+    yield first
+    for rate in rates:
+        judged = first if strategy == "large_final" else latest
+        mask = STRATEGIES[strategy](judged.tensors, mask, rate)
+        latest = trained(mask, rate)
+        yield latest
+
+
+def _rounds(listen: Listener, count: int) -> Iterator[Listener]:
+    """A listener for each round, which says which it is and how long all of them take."""
+    started = time.monotonic()
+    for number in range(count):
+
+        def heard(update: Progress, number: int = number) -> None:
+            done = (number + update.step / update.steps) / count
+            left = (time.monotonic() - started) / done * (1 - done)
+            stage = f"{update.stage}, round {number + 1} of {count}"
+            listen(replace(update, stage=stage, seconds_left=left))
+
+        yield heard

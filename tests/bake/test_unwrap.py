@@ -1,0 +1,53 @@
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from nispcodec.bake.unwrap import unwrap
+from nispcodec.core.asset import TexturedMesh
+from nispcodec.core.errors import MeshError
+from nispcodec.geometry.charts import split_charts
+from tests.io.files import image, load_obj
+
+CUBE = (
+    "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\n"
+    "mtllib a.mtl\nusemtl red\nf 1 4 3 2\nf 5 6 7 8\nf 1 2 6 5\n"
+    "usemtl blue\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n"
+)
+MTL = "newmtl red\nKd 1 0 0\nnewmtl blue\nKd 0 0 1\nmap_Kd w.png\n"
+
+
+@pytest.fixture
+def cube(tmp_path: Path) -> TexturedMesh:
+    return load_obj(tmp_path, CUBE, a_mtl=MTL, w_png=image())
+
+
+def test_every_face_gets_uvs_and_keeps_the_rest(cube: TexturedMesh):
+    pytest.importorskip("xatlas")
+    made = unwrap(cube)
+    assert made.has_uv.all()
+    assert made.uvs.min() >= 0
+    assert made.uvs.max() <= 1
+    np.testing.assert_array_equal(made.corners, cube.corners)
+    np.testing.assert_array_equal(made.face_materials, cube.face_materials)
+    assert [material.base_color for material in made.materials] == [(1, 0, 0, 1), (0, 0, 1, 1)]
+    assert 2 <= len(split_charts(made)) <= 6
+
+
+def test_textures_of_the_old_atlas_go_with_a_warning(cube: TexturedMesh):
+    pytest.importorskip("xatlas")
+    made = unwrap(cube)
+    assert made.textures == ()
+    assert made.materials[1].maps == {}
+    assert made.warnings == ("textures fit the old atlas only and are dropped: w.png",)
+
+
+def test_without_xatlas_the_error_says_what_to_install(
+    cube: TexturedMesh, monkeypatch: pytest.MonkeyPatch
+):
+    monkeypatch.setitem(sys.modules, "xatlas", None)
+    with pytest.raises(MeshError, match=r"pip install 'nispcodec\[unwrap\]'"):
+        unwrap(cube)

@@ -1,0 +1,150 @@
+from __future__ import annotations
+
+import io
+
+import numpy as np
+import PIL.Image
+import pytest
+
+from nispcodec.core.asset import Material, Texture, TextureMap
+from nispcodec.core.errors import MeshError
+from nispcodec.core.texture import (
+    base_color,
+    decode_image,
+    linear_to_srgb,
+    reencode,
+    sample_texture,
+    srgb_to_linear,
+)
+
+# Two columns, two rows; the value of a texel is column + 10 * row from the bottom.
+SMALL = np.array([[[10.0], [11.0]], [[0.0], [1.0]]], dtype=np.float32)
+
+
+def encoded(image: PIL.Image.Image, kind: str = "PNG") -> Texture:
+    buffer = io.BytesIO()
+    image.save(buffer, kind)
+    return Texture("t.png", buffer.getvalue(), "image/png")
+
+
+def sampled(u: float, v: float, **how: object) -> float:
+    return float(sample_texture(SMALL, np.array([[u, v]]), **how)[0, 0])
+
+
+def test_origin_is_bottom_left() -> None:
+    assert sampled(0.25, 0.25) == 0
+    assert sampled(0.75, 0.25) == 1
+    assert sampled(0.25, 0.75) == 10
+
+
+def test_bilinear_weights() -> None:
+    assert sampled(0.5, 0.25) == pytest.approx(0.5)
+    assert sampled(0.25, 0.5) == pytest.approx(5)
+    assert sampled(0.35, 0.45) == pytest.approx(0.2 + 4)
+
+
+@pytest.mark.parametrize(
+    ("wrap", "u", "value"),
+    [
+        ("repeat", 1.25, 0),
+        ("repeat", -0.25, 1),
+        ("repeat", 1.0, 0.5),
+        ("clamp", 7.0, 1),
+        ("clamp", -7.0, 0),
+        ("mirror", 1.25, 1),
+        ("mirror", -0.25, 0),
+        ("mirror", 1.75, 0),
+        ("mirror", 1.0, 1),
+    ],
+)
+def test_wrap(wrap: str, u: float, value: float) -> None:
+    assert sampled(u, 0.25, wrap=(wrap, "clamp")) == pytest.approx(value)
+    turned = sample_texture(
+        SMALL.transpose(1, 0, 2)[::-1, ::-1], np.array([[0.25, u]]), ("clamp", wrap)
+    )
+    assert float(turned[0, 0]) == pytest.approx(value)
+
+
+def test_nearest_takes_the_texel_under_the_point() -> None:
+    assert sampled(0.49, 0.49, filter="nearest") == 0
+    assert sampled(0.51, 0.49, filter="nearest") == 1
+    assert sampled(-0.01, 0.51, filter="nearest") == 11
+
+
+def test_uv_far_outside_is_finite() -> None:
+    values = sample_texture(SMALL, np.array([[1e300, -1e300], [-3e9, 3e18]]))
+    assert np.isfinite(values).all()
+
+
+@pytest.mark.parametrize("mode", ["RGB", "RGBA", "L", "LA", "P", "1"])
+def test_decode_widens_every_mode(mode: str) -> None:
+    image = decode_image(encoded(PIL.Image.new("RGB", (3, 2), (255, 255, 255)).convert(mode)))
+    assert image.shape == (2, 3, 4)
+    assert image.dtype == np.float32
+    assert (image == 1).all()
+
+
+def test_decode_keeps_values_alpha_and_row_order() -> None:
+    pixels = np.arange(24, dtype=np.uint8).reshape(2, 3, 4)
+    image = decode_image(encoded(PIL.Image.fromarray(pixels, "RGBA")))
+    np.testing.assert_allclose(image * 255, pixels, atol=1e-4)
+
+
+def test_decode_16_bit_grey() -> None:
+    grey = np.array([[0, 65535 // 4]], dtype=np.uint16)
+    image = decode_image(encoded(PIL.Image.fromarray(grey)))
+    np.testing.assert_allclose(image[0, 1], [0.25, 0.25, 0.25, 1], atol=1e-4)
+
+
+def test_decode_cmyk_jpeg() -> None:
+    image = decode_image(encoded(PIL.Image.new("CMYK", (2, 2), (0, 0, 0, 0)), "JPEG"))
+    np.testing.assert_allclose(image, 1, atol=0.02)
+
+
+@pytest.mark.parametrize("kept", [0, 1, 20, 45, 60])
+def test_broken_image_is_named(kept: int) -> None:
+    whole = encoded(PIL.Image.effect_noise((16, 16), 50))
+    with pytest.raises(MeshError, match=r"texture wood\.png"):
+        decode_image(Texture("wood.png", whole.data[:kept], "image/png"))
+
+
+def test_too_large_image_is_refused_before_decoding() -> None:
+    texture = encoded(PIL.Image.new("1", (9500, 9500)))
+    with pytest.raises(MeshError, match="texture"):
+        decode_image(texture)
+
+
+def test_srgb_round_trip_and_known_value() -> None:
+    values = np.linspace(0, 1, 256, dtype=np.float32)
+    np.testing.assert_allclose(linear_to_srgb(srgb_to_linear(values)), values, atol=1e-6)
+    assert float(linear_to_srgb(np.array([0.5], dtype=np.float32))[0]) == pytest.approx(0.735357)
+
+
+def test_base_color_without_map_is_the_factor_encoded() -> None:
+    color = base_color(Material(base_color=(0.5, 0.0, 1.0, 0.25)), None, np.zeros((2, 2)))
+    np.testing.assert_allclose(color, [[0.735357, 0, 1, 0.25]] * 2, atol=1e-5)
+
+
+def test_base_color_multiplies_in_linear_light() -> None:
+    material = Material(
+        base_color=(0.5, 0.5, 0.5, 0.5), maps={"base_color": TextureMap(0, filter="nearest")}
+    )
+    image = np.full((1, 1, 4), 0.8, dtype=np.float32)
+    color = base_color(material, image, np.zeros((1, 2)))
+    expected = linear_to_srgb(srgb_to_linear(image[0]) * np.float32(0.5))[0, :3]
+    np.testing.assert_allclose(color[0], [*expected, 0.4], atol=1e-6)
+
+
+def test_reencoded_images_keep_their_pixels_and_different_names() -> None:
+    image = PIL.Image.fromarray(np.full((8, 8, 3), (10, 200, 90), np.uint8))
+    twice = [encoded(image), encoded(image, "JPEG")]
+    for kind in ("webp", "avif", "jpeg"):
+        again = reencode(twice, kind, 90)
+        assert len({texture.name for texture in again}) == 2
+        assert {texture.mime for texture in again} == {f"image/{kind}"}
+        assert decode_image(again[0]) == pytest.approx(decode_image(twice[0]), abs=0.05)
+
+
+def test_jpeg_leaves_transparent_images_alone() -> None:
+    clear = encoded(PIL.Image.new("RGBA", (4, 4), (1, 2, 3, 100)))
+    assert reencode([clear], "jpeg", 90) == (clear,)

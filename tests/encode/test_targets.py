@@ -1,0 +1,105 @@
+"""Fits to a size and to an error: real ones of a ball, and made-up ones with a known law."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from nispcodec import Material, NispError
+from nispcodec.core.document import ChartTable, Document, Frame
+from nispcodec.core.errors import FitError
+from nispcodec.core.network import Network
+from nispcodec.core.progress import Listener, Progress, silent
+from nispcodec.dataset.recipes import TrainingSets
+from nispcodec.encode.targets import Fitting, Networks, fit_to_error, fit_to_size, fit_with_preset
+from nispcodec.format import pack
+from nispcodec.geometry.symmetry import Mirrors
+from nispcodec.train.presets import Effort, Problem
+from nispcodec.train.task import Task
+from nispcodec.train.workers import fit_networks
+from tests.train.test_loop import ball_samples
+
+TABLE = ChartTable(materials=np.zeros(1, np.int32), has_uv=np.zeros(1, np.bool_))
+
+
+def problem() -> Problem:
+    samples, held_out = ball_samples(4000, 0), ball_samples(500, 1)
+    held_out = replace(held_out, sdf=np.zeros_like(held_out.sdf))
+    sets = TrainingSets(samples, samples, held_out, held_out, samples, samples[:0])
+    return Problem(sets, 1, False, 5.0, Mirrors(0, 0))
+
+
+def really(tasks: list[Task], listen: Listener) -> Networks:
+    return fit_networks(tasks, 0, "cpu", 2, listen)
+
+
+def by_law(tasks: list[Task], listen: Listener) -> Networks:
+    """Networks that are a constant, which is their error as all held-out distances are 0."""
+    networks = {}
+    for task in tasks:
+        listen(Progress(task.name, "fit", 1, 1, error=1e-3))
+        spec = task.spec
+        tensors = {name: np.zeros(shape, np.float32) for name, shape in spec.shapes.items()}
+        tensors[f"bias.{len(spec.hidden)}"][:] = 0.02 / spec.hidden[0] ** 1.2
+        networks[task.name] = Network(spec, tensors)
+    return networks
+
+
+def fitting(fit=by_law, listen: Listener = silent) -> Fitting:
+    return Fitting(problem(), Effort(2.0, 0.5, 1, 100), fit, listen)
+
+
+def document(networks: Mapping[str, Network]) -> Document:
+    frame = Frame((0.0, 0.0, 0.0), 1.0)
+    return Document(frame, TABLE, (Material("one"),), (), sdf=networks["sdf"])
+
+
+@pytest.mark.parametrize("wanted", [1500, 3000])
+def test_the_file_has_the_size_that_was_asked_for(wanted: int) -> None:
+    data = pack(document(fit_to_size(fitting(really), wanted, document)))
+    assert len(data) == pytest.approx(wanted, rel=0.05)
+
+
+@pytest.mark.parametrize("wanted", [3e-4, 1e-4, 5e-4])
+def test_the_error_is_the_one_that_was_asked_for(wanted: float) -> None:
+    network = fit_to_error(fitting(), wanted)["sdf"]
+    assert 0.02 / network.spec.hidden[0] ** 1.2 == pytest.approx(wanted, rel=0.1)
+
+
+def test_every_try_is_told() -> None:
+    notes: list[str] = []
+    fit_to_error(fitting(listen=lambda update: notes.append(update.note)), 1e-4)
+    told = [note for note in notes if note]
+    assert len(told) > 1
+    assert all("asked 0.0001" in note for note in told)
+
+
+def test_no_try_is_made_twice_where_the_smallest_network_is_good_enough() -> None:
+    spec = fit_to_error(fitting(), 1e-2)["sdf"].spec
+    assert spec.hidden[0] == 8
+
+
+def test_targets_out_of_reach_are_errors_before_any_training() -> None:
+    def never(tasks: list[Task], listen: Listener) -> Networks:
+        raise AssertionError("trained")
+
+    with pytest.raises(NispError, match=r"target size: expected at least \d+ bytes"):
+        fit_to_size(fitting(never), 100, document)
+    with pytest.raises(NispError, match="target error: expected at least"):
+        fit_to_error(fitting(never), 1e-9)
+
+
+def test_an_error_that_no_width_reaches_says_what_was_reached() -> None:
+    with pytest.raises(FitError, match=r"target error: expected 2e-05 .* width 128"):
+        fit_to_error(fitting(), 2e-5)
+
+
+def test_the_probe_decides_the_width() -> None:
+    def easier(tasks: list[Task], listen: Listener) -> Networks:
+        return by_law(tasks, lambda update: listen(replace(update, error=update.error / 2)))
+
+    widths = [fit_with_preset(fitting(fit))["sdf"].spec.hidden[0] for fit in (by_law, easier)]
+    assert widths[0] > widths[1]

@@ -1,0 +1,67 @@
+"""The resolution that an asset gets when nobody asks for one."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from nispcodec.core.network import Network
+from nispcodec.extract.isosurface import near_surface
+from nispcodec.extract.meshing import LEAST, MOST, default_resolution
+from nispcodec.extract.thin_walls import thin_share
+from nispcodec.model import NispModel
+from tests import tiny
+
+
+def plate(thickness: float) -> Network:
+    """max(|z| - thickness / 2, (|x| + |y|) / 2 - 0.2): a square plate, solid inside."""
+    axes = np.vstack([np.eye(3), -np.eye(3)])
+    ways = np.array([[0, 0, 1, 0, 0, 1], [0.5, 0.5, 0, 0.5, 0.5, 0]])
+    bias = np.array([-thickness / 2, -0.2])
+    # max(a, b) = b + relu(a - b), and b = relu(b) - relu(-b).
+    second = np.vstack([ways[0] - ways[1], ways[1], -ways[1]])
+    seconds = np.array([bias[0] - bias[1], bias[1], -bias[1]])
+    last = np.array([[1.0, 1.0, -1.0]])
+    return tiny.relu_network([(axes, np.zeros(6)), (second, seconds), (last, np.zeros(1))])
+
+
+@pytest.mark.parametrize(("thickness", "least", "most"), [(0.003, 0.9, 1), (0.1, 0, 0.2)])
+def test_thin_walls_are_told_though_no_grid_point_lies_inside(
+    thickness: float, least: float, most: float
+) -> None:
+    network = plate(thickness)
+    points, size = near_surface(network, LEAST)
+    assert least <= thin_share(network, points, size, 0.01) <= most
+
+
+def test_islands_in_a_membrane_go_with_it() -> None:
+    # Chart 1, an opening, where x > 0, but for the tip, which the network gives to chart 0.
+    rows = np.array([[-1.0, 0, 0], [1.0, 0, 0], [1.0, 0, 0]]), np.array([0, 0, -0.792])
+    last = np.array([[1.0, 0, 1000], [0, 1, 0]]), np.zeros(2)
+    chart, table = tiny.relu_network([rows, last]), tiny.document().charts
+    opened = replace(table, has_uv=np.array([True, False]), openings=True)
+    model = NispModel(replace(tiny.document(), chart=chart))
+    whole, half = (
+        NispModel(replace(model.document, charts=charts)).to_mesh() for charts in (table, opened)
+    )
+    right = [model.document.frame.to_normalised(mesh.positions)[:, 0] for mesh in (whole, half)]
+    assert right[0].max() > 0.79
+    assert right[1].max() < 0.02
+    assert len(half.faces) > 0.4 * len(whole.faces)
+
+
+def test_default_resolution_follows_the_walls() -> None:
+    assert default_resolution(plate(0.003), 0.0) == MOST
+    assert default_resolution(tiny.octahedron(), 0.0) == LEAST
+
+
+@pytest.mark.parametrize(("shell", "expected"), [(0.05, LEAST), (0.004, 510), (1e-4, 2048)])
+def test_sheets_get_a_cell_for_half_their_thickness(shell: float, expected: int) -> None:
+    document = replace(tiny.document(tiny.octahedron()), shell=shell)
+    assert default_resolution(document.sdf, document.shell) == expected
+
+
+def test_no_surface_at_all_has_a_default_too() -> None:
+    assert default_resolution(tiny.octahedron(-1), 0.0) == LEAST

@@ -1,0 +1,64 @@
+"""The eight real assets beside the project, when they are there."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from nispcodec.dataset.sampler import Sampler
+from nispcodec.geometry.charts import split_charts
+from nispcodec.geometry.symmetry import Mirrors
+from nispcodec.io.load import load_mesh
+
+ASSETS = Path(__file__).resolve().parents[3] / "shared" / "assets"
+
+# Faces, charts, materials, textures, maps of the first material.
+EXPECTED = {
+    "boombox": (6036, 20, 1, 2, {"base_color", "normal"}),
+    "chess_king": (40480, 15, 1, 2, {"base_color", "normal"}),
+    "exploding_barrel": (8150, 23, 1, 2, {"base_color", "normal"}),
+    "flight_helmet": (94722, 237, 6, 10, {"base_color", "normal"}),
+    "food_apple_01": (7012, 13, 1, 1, {"base_color"}),
+    "gz_polaris": (7714, 354, 1, 1, {"base_color"}),
+    "spot": (5856, 13, 1, 1, {"base_color"}),
+    "tea_set_01": (40296, 44, 1, 2, {"base_color", "normal"}),
+}
+
+
+@pytest.mark.parametrize("name", EXPECTED)
+def test_real_asset(name: str):
+    path = ASSETS / name / f"{name}.obj"
+    if not path.exists():
+        pytest.skip(f"no asset {path}")
+    mesh = load_mesh(path)
+    found = (
+        len(mesh.faces),
+        len(split_charts(mesh)),
+        len(mesh.materials),
+        len(mesh.textures),
+        set(mesh.materials[0].maps),
+    )
+    assert found == EXPECTED[name]
+    assert mesh.warnings == ()
+    assert mesh.has_uv.all()
+    originals = {image.read_bytes() for image in path.parent.iterdir()}
+    assert {texture.data for texture in mesh.textures} <= originals
+
+
+@pytest.mark.parametrize(
+    ("name", "expected"),
+    [
+        ("spot", Mirrors(sdf=0b000001, uv=0)),
+        ("exploding_barrel", Mirrors(sdf=0b100101, uv=0)),
+        ("chess_king", Mirrors(sdf=0b000101, uv=0)),
+        ("boombox", Mirrors(sdf=0b001001, uv=0)),
+        ("gz_polaris", Mirrors(sdf=0b001001, uv=0b001001)),
+        ("tea_set_01", Mirrors(sdf=0, uv=0)),
+    ],
+)
+def test_symmetry_of_real_assets(name: str, expected: Mirrors) -> None:
+    path = ASSETS / name / f"{name}.obj"
+    if not path.exists():
+        pytest.skip(f"no asset {path}")
+    assert Sampler(load_mesh(path), seed=0).mirrors == expected

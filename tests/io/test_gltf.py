@@ -1,0 +1,474 @@
+from __future__ import annotations
+
+import base64
+import json
+import math
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from nispcodec.core.asset import TexturedMesh
+from nispcodec.core.errors import MeshError
+from nispcodec.io.folder import Folder
+from nispcodec.io.load import load_mesh
+from nispcodec.io.read.gltf import read_gltf
+from tests.io.files import Gltf, image, outcome
+
+CORNERS = [(0, 0, 0), (1, 0, 0), (0, 1, 0)]
+UVS = [(0, 0), (0.25, 0.5), (2, -1)]
+NOWHERE = Folder(Path("/nonexistent"))
+
+
+def triangle(gltf: Gltf, uvs: bool = True, **more: Any) -> dict[str, Any]:
+    attributes = {"POSITION": gltf.accessor(CORNERS)}
+    if uvs:
+        attributes["TEXCOORD_0"] = gltf.accessor(UVS)
+    return {"attributes": attributes, "indices": gltf.accessor([0, 1, 2], "u1"), **more}
+
+
+def one_triangle(**node: Any) -> Gltf:
+    gltf = Gltf()
+    return gltf.scene([triangle(gltf)], **node)
+
+
+def textured(info: dict[str, Any] | None = None, **material: Any) -> Gltf:
+    """A triangle whose material has a base colour map with this textureInfo."""
+    gltf = Gltf()
+    gltf.json["images"] = [{"bufferView": gltf.view(image()), "mimeType": "image/png"}]
+    gltf.json["textures"] = [{"source": 0}]
+    pbr = {"baseColorTexture": {"index": 0, **(info or {})}}
+    gltf.json["materials"] = [{"name": "m", "pbrMetallicRoughness": pbr, **material}]
+    return gltf.scene([triangle(gltf, material=0)])
+
+
+def test_positions_faces_and_flipped_uvs(tmp_path: Path):
+    mesh = one_triangle().load(tmp_path)
+    assert mesh.corners.tolist() == [[list(corner) for corner in CORNERS]]
+    assert mesh.corner_uvs.tolist() == [[[0, 1], [0.25, 0.5], [2, 2]]]
+    assert mesh.warnings == ()
+    assert mesh.name == "a"
+
+
+def test_a_gltf_with_data_uris_or_external_files_equals_the_glb(tmp_path: Path):
+    glb = one_triangle().load(tmp_path)
+    gltf = one_triangle()
+    (tmp_path / "b.gltf").write_bytes(gltf.text())
+    document = json.loads(gltf.text())
+    document["buffers"][0]["uri"] = "my%20data.bin"
+    (tmp_path / "my data.bin").write_bytes(gltf.data)
+    (tmp_path / "c.gltf").write_text(json.dumps(document))
+    for name in ("b.gltf", "c.gltf"):
+        mesh = load_mesh(tmp_path / name)
+        np.testing.assert_array_equal(mesh.corners, glb.corners)
+        np.testing.assert_array_equal(mesh.corner_uvs, glb.corner_uvs)
+
+
+def test_without_indices_and_without_uvs(tmp_path: Path):
+    gltf = Gltf()
+    primitive = triangle(gltf, uvs=False)
+    del primitive["indices"]
+    mesh = gltf.scene([primitive]).load(tmp_path)
+    assert mesh.faces.tolist() == [[0, 1, 2]]
+    assert not mesh.has_uv.any()
+
+
+@pytest.mark.parametrize(
+    ("dtype", "top", "more"),
+    [("u1", 255, {}), ("<u2", 65535, {}), ("i1", 127, {}), ("<i2", 32767, {})],
+)
+def test_normalised_integers(tmp_path: Path, dtype: str, top: int, more: dict[str, Any]):
+    gltf = Gltf()
+    primitive = triangle(gltf)
+    stored = [(0, top), (top, 0), (top // 3, 0)]
+    accessor = gltf.accessor(stored, dtype, normalized=True, **more)
+    primitive["attributes"]["TEXCOORD_0"] = accessor
+    mesh = gltf.scene([primitive]).load(tmp_path)
+    expected = np.array(stored) / top
+    np.testing.assert_array_equal(mesh.corner_uvs[0, :, 0], expected[:, 0])
+    np.testing.assert_array_equal(mesh.corner_uvs[0, :, 1], 1 - expected[:, 1])
+
+
+def test_quantised_positions(tmp_path: Path):
+    gltf = Gltf()
+    primitive = triangle(gltf)
+    primitive["attributes"]["POSITION"] = gltf.accessor(np.array(CORNERS) * 100, "<u2")
+    gltf.json["extensionsRequired"] = ["KHR_mesh_quantization"]
+    mesh = gltf.scene([primitive], scale=[0.01, 0.01, 0.01]).load(tmp_path)
+    np.testing.assert_allclose(mesh.corners[0], CORNERS)
+
+
+def test_interleaved_attributes(tmp_path: Path):
+    gltf = Gltf()
+    rows = np.hstack([CORNERS, UVS, [[9.0]] * 3]).astype("<f4")
+    view = gltf.view(rows.tobytes(), byteStride=24)
+    common = {"bufferView": view, "componentType": 5126, "count": 3}
+    gltf.json["accessors"] = [
+        {**common, "type": "VEC3"},
+        {**common, "type": "VEC2", "byteOffset": 12},
+    ]
+    mesh = gltf.scene([{"attributes": {"POSITION": 0, "TEXCOORD_0": 1}}]).load(tmp_path)
+    np.testing.assert_array_equal(mesh.corners[0], CORNERS)
+    np.testing.assert_array_equal(mesh.corner_uvs[0, :, 0], np.array(UVS)[:, 0])
+
+
+@pytest.mark.parametrize("base", [True, False])
+def test_sparse_accessors(tmp_path: Path, base: bool):
+    gltf = Gltf()
+    sparse = {
+        "count": 2,
+        "indices": {"bufferView": gltf.view(bytes([1, 2])), "componentType": 5121},
+        "values": {"bufferView": gltf.view(np.array(CORNERS[1:], dtype="<f4").tobytes())},
+    }
+    accessor = gltf.accessor([(0, 0, 0), (7, 7, 7), (8, 8, 8)], sparse=sparse)
+    if not base:
+        del gltf.json["accessors"][accessor]["bufferView"]
+    mesh = gltf.scene([{"attributes": {"POSITION": accessor}}]).load(tmp_path)
+    np.testing.assert_array_equal(mesh.corners[0], CORNERS)
+
+
+@pytest.mark.parametrize(
+    ("mode", "expected"),
+    [
+        (4, [[0, 1, 2], [3, 4, 5]]),
+        (5, [[0, 1, 2], [1, 3, 2], [2, 3, 4], [3, 5, 4]]),
+        (6, [[1, 2, 0], [2, 3, 0], [3, 4, 0], [4, 5, 0]]),
+    ],
+)
+def test_lists_strips_and_fans(tmp_path: Path, mode: int, expected: list[list[int]]):
+    gltf = Gltf()
+    points = np.random.default_rng(0).normal(size=(6, 3))
+    primitive = {"attributes": {"POSITION": gltf.accessor(points)}, "mode": mode}
+    assert gltf.scene([primitive]).load(tmp_path).faces.tolist() == expected
+
+
+def test_points_and_lines_are_left_out_by_name(tmp_path: Path):
+    gltf = Gltf()
+    lines = {"attributes": {"POSITION": gltf.accessor(CORNERS)}, "mode": 1}
+    mesh = gltf.scene([triangle(gltf), lines]).load(tmp_path)
+    assert len(mesh.faces) == 1
+    assert mesh.warnings == (
+        "a.glb: meshes[0].primitives[1]: left out, not a primitive of triangles",
+    )
+
+
+def test_node_transforms_apply_from_the_root_down(tmp_path: Path):
+    half = math.sqrt(0.5)
+    gltf = one_triangle(translation=[0, 0, 5], scale=[2, 2, 2])
+    gltf.json["nodes"].append({"children": [0], "rotation": [0, 0, half, half]})
+    gltf.json["nodes"].append(
+        {"children": [1], "matrix": [*np.eye(4).reshape(-1)[:12], 1, 0, 0, 1]}
+    )
+    gltf.json["scenes"] = [{"nodes": [2]}]
+    mesh = gltf.load(tmp_path)
+    np.testing.assert_allclose(mesh.corners[0], [(1, 0, 5), (1, 2, 5), (-1, 0, 5)], atol=1e-12)
+
+
+def test_mirroring_transforms_flip_the_winding(tmp_path: Path):
+    mesh = one_triangle(scale=[1, 1, -1]).load(tmp_path)
+    a, b, c = mesh.corners[0]
+    assert np.cross(b - a, c - a)[2] < 0
+    assert mesh.corner_uvs[0].tolist() == [[0, 1], [2, 2], [0.25, 0.5]]
+
+
+def test_instances_of_a_mesh(tmp_path: Path):
+    gltf = one_triangle()
+    gltf.json["nodes"].append({"mesh": 0, "translation": [10, 0, 0]})
+    gltf.json["scenes"] = [{"nodes": [0, 1]}]
+    mesh = gltf.load(tmp_path)
+    assert mesh.corners[:, 0, 0].tolist() == [0, 10]
+
+
+def test_a_file_without_scenes_shows_its_root_nodes(tmp_path: Path):
+    gltf = one_triangle()
+    del gltf.json["scenes"]
+    assert len(gltf.load(tmp_path).faces) == 1
+
+
+def test_only_the_default_scene_counts(tmp_path: Path):
+    gltf = one_triangle()
+    gltf.json["nodes"].append({"mesh": 0, "translation": [10, 0, 0]})
+    gltf.json.update(scenes=[{"nodes": [0]}, {"nodes": [1]}], scene=1)
+    assert gltf.load(tmp_path).positions[0].tolist() == [10, 0, 0]
+
+
+def test_primitives_share_vertices_and_keep_their_materials(tmp_path: Path):
+    gltf = Gltf()
+    first = triangle(gltf, material=1)
+    second = {**first, "indices": gltf.accessor([0, 2, 1], "<u4"), "material": 0}
+    gltf.json["materials"] = [{"name": "zero"}, {"name": "one"}, {"name": "unused"}]
+    mesh = gltf.scene([first, second, {**first, "indices": gltf.accessor([1, 2, 0], "u1")}])
+    del mesh.json["meshes"][0]["primitives"][2]["material"]
+    loaded = mesh.load(tmp_path)
+    assert len(loaded.positions) == 3
+    assert loaded.face_materials.tolist() == [0, 1, 2]
+    assert [material.name for material in loaded.materials] == ["one", "zero", "material"]
+
+
+def test_material_values(tmp_path: Path):
+    gltf = textured(
+        alphaMode="MASK", alphaCutoff=0.25, doubleSided=True, emissiveFactor=[0.5, 0, 1],
+        normalTexture={"index": 0, "scale": 0.5}, occlusionTexture={"index": 0, "strength": 0.25},
+        emissiveTexture={"index": 0},
+    )  # fmt: skip
+    gltf.json["materials"][0]["pbrMetallicRoughness"].update(
+        baseColorFactor=[0.1, 0.2, 0.3, 0.4], metallicFactor=0.5, roughnessFactor=0.75,
+        metallicRoughnessTexture={"index": 0},
+    )  # fmt: skip
+    mesh = gltf.load(tmp_path)
+    (made,) = mesh.materials
+    assert made.base_color == (0.1, 0.2, 0.3, 0.4)
+    assert (made.metallic, made.roughness) == (0.5, 0.75)
+    assert (made.alpha_mode, made.alpha_cutoff, made.double_sided) == ("mask", 0.25, True)
+    assert made.emissive == (0.5, 0.0, 1.0)
+    assert set(made.maps) == {
+        "base_color", "normal", "metallic_roughness", "occlusion", "emissive",
+    }  # fmt: skip
+    assert (made.maps["normal"].strength, made.maps["occlusion"].strength) == (0.5, 0.25)
+    assert [texture.data for texture in mesh.textures] == [image()]
+
+
+def test_defaults_are_those_of_gltf(tmp_path: Path):
+    gltf = Gltf()
+    gltf.json["materials"] = [{}]
+    made = gltf.scene([triangle(gltf, material=0)]).load(tmp_path).materials[0]
+    assert (made.metallic, made.roughness, made.base_color) == (1.0, 1.0, (1.0, 1.0, 1.0, 1.0))
+
+
+def test_samplers(tmp_path: Path):
+    gltf = textured()
+    gltf.json["samplers"] = [{"wrapS": 33071, "wrapT": 33648, "magFilter": 9728}]
+    gltf.json["textures"][0]["sampler"] = 0
+    used = gltf.load(tmp_path).materials[0].maps["base_color"]
+    assert (used.wrap, used.filter) == (("clamp", "mirror"), "nearest")
+
+
+def test_texture_transform_applies_before_the_flip(tmp_path: Path):
+    moved = {"offset": [0, 1], "rotation": math.pi / 2, "scale": [0.5, 0.5]}
+    mesh = textured({"extensions": {"KHR_texture_transform": moved}}).load(tmp_path)
+    # The extension's own example: the lower left quadrant of the image.
+    expected = [(0.5 * v, 1 - (1 - 0.5 * u)) for u, v in UVS]
+    np.testing.assert_allclose(mesh.corner_uvs[0], expected, atol=1e-12)
+
+
+def test_texcoord_chooses_the_uvs(tmp_path: Path):
+    gltf = textured({"texCoord": 1})
+    other = [(0.5, 0.5), (1, 0), (0, 0)]
+    attributes = gltf.json["meshes"][0]["primitives"][0]["attributes"]
+    attributes["TEXCOORD_1"] = gltf.accessor(other)
+    mesh = gltf.load(tmp_path)
+    assert mesh.corner_uvs[0].tolist() == [[u, 1 - v] for u, v in other]
+
+
+def test_maps_of_different_uvs_take_the_base_colours_and_warn(tmp_path: Path):
+    mesh = textured(normalTexture={"index": 0, "texCoord": 1}).load(tmp_path)
+    assert mesh.corner_uvs[0, 1].tolist() == [0.25, 0.5]
+    assert "those of base_color are taken for all" in mesh.warnings[0]
+
+
+@pytest.mark.parametrize("extension", ["EXT_texture_webp", "EXT_texture_avif"])
+def test_modern_images(tmp_path: Path, extension: str):
+    gltf = textured()
+    data = image(extension[-4:].upper())
+    uri = "data:image/x;base64," + base64.b64encode(data).decode()
+    gltf.json["images"].append({"uri": uri})
+    gltf.json["textures"] = [{"source": 0, "extensions": {extension: {"source": 1}}}]
+    gltf.json["extensionsRequired"] = [extension]
+    (texture,) = gltf.load(tmp_path).textures
+    assert texture.data == data
+    assert texture.mime == f"image/{extension[-4:]}"
+
+
+def test_external_images(tmp_path: Path):
+    gltf = textured()
+    gltf.json["images"] = [{"uri": "my%20wood.png"}]
+    mesh = gltf.load(tmp_path)
+    assert mesh.warnings == ("a.glb: images[0]: image 'my wood.png' not found",)
+    assert mesh.materials[0].maps == {}
+    (tmp_path / "my wood.png").write_bytes(image())
+    mesh = gltf.load(tmp_path)
+    assert mesh.textures[0].name == "my wood.png"
+
+
+def test_an_image_format_we_cannot_read_is_a_warning(tmp_path: Path):
+    gltf = textured()
+    gltf.json["textures"] = [{"extensions": {"KHR_texture_basisu": {"source": 0}}}]
+    mesh = gltf.load(tmp_path)
+    assert mesh.warnings == ("a.glb: textures[0]: holds no image that we can read",)
+
+
+def test_specular_glossiness_becomes_diffuse_and_roughness(tmp_path: Path):
+    gltf = textured()
+    glossy = {
+        "diffuseFactor": [1, 0, 0, 1],
+        "glossinessFactor": 0.75,
+        "diffuseTexture": {"index": 0},
+    }
+    extension = "KHR_materials_pbrSpecularGlossiness"
+    gltf.json["materials"] = [{"extensions": {extension: glossy}}]
+    mesh = gltf.load(tmp_path)
+    (made,) = mesh.materials
+    assert (made.base_color, made.metallic, made.roughness) == ((1, 0, 0, 1), 0.0, 0.25)
+    assert "base_color" in made.maps
+    assert "specular-glossiness" in mesh.warnings[0]
+
+
+def test_what_is_lost_is_said(tmp_path: Path):
+    gltf = one_triangle(skin=0, translation=[5, 0, 0])
+    primitive = gltf.json["meshes"][0]["primitives"][0]
+    primitive["attributes"]["COLOR_0"] = 0
+    primitive["targets"] = [{"POSITION": 0}]
+    gltf.json.update(skins=[{"joints": [0]}], animations=[{}])
+    gltf.json["materials"] = [{"extensions": {"KHR_materials_clearcoat": {}}}]
+    primitive["material"] = 0
+    mesh = gltf.load(tmp_path)
+    said = " ".join(mesh.warnings)
+    for what in ("animations", "bind pose", "vertex colours", "morph targets", "clearcoat"):
+        assert what in said
+    assert mesh.positions[0].tolist() == [0, 0, 0]
+
+
+def broken(change: str) -> bytes:
+    """A document spoilt in one place."""
+    gltf = textured()
+    primitive = gltf.json["meshes"][0]["primitives"][0]
+    spoil = {
+        "version": lambda: gltf.json.update(asset={"version": "1.0"}),
+        "no asset": lambda: gltf.json.pop("asset"),
+        "draco": lambda: gltf.json.update(extensionsRequired=["KHR_draco_mesh_compression"]),
+        "meshopt": lambda: gltf.json.update(extensionsRequired=["EXT_meshopt_compression"]),
+        "extension": lambda: gltf.json.update(extensionsRequired=["ACME_magic"]),
+        "accessor": lambda: primitive["attributes"].update(POSITION=99),
+        "negative": lambda: primitive["attributes"].update(POSITION=-1),
+        "type": lambda: primitive["attributes"].update(POSITION="zero"),
+        "view end": lambda: gltf.json["bufferViews"][1].update(byteLength=10**9),
+        "count": lambda: gltf.json["accessors"][0].update(count=10**12),
+        "stride": lambda: gltf.json["bufferViews"][1].update(byteStride=40),
+        "zeros": lambda: [gltf.json["accessors"][0].update(count=10**12),
+                          gltf.json["accessors"][0].pop("bufferView")],
+        "component": lambda: gltf.json["accessors"][0].update(componentType=5124),
+        "width": lambda: gltf.json["accessors"][0].update(type="VEC2"),
+        "float indices": lambda: primitive.update(indices=0),
+        "index": lambda: primitive.update(indices=gltf.accessor([0, 1, 3], "u1")),
+        "two indices": lambda: primitive.update(indices=gltf.accessor([0, 1], "u1")),
+        "nan": lambda: primitive["attributes"].update(
+            POSITION=gltf.accessor([*CORNERS[:2], (0, math.nan, 0)])),
+        "uv count": lambda: primitive["attributes"].update(TEXCOORD_0=gltf.accessor(UVS[:2])),
+        "cycle": lambda: gltf.json["nodes"][0].update(children=[0]),
+        "children": lambda: gltf.json["nodes"][0].update(children="all"),
+        "scene": lambda: gltf.json.update(scene=3),
+        "matrix": lambda: gltf.json["nodes"][0].update(matrix=[1, 2, 3]),
+        "image": lambda: gltf.json["images"][0].update(bufferView=1),
+        "base64": lambda: gltf.json["images"][0].update(uri="data:;base64,a"),
+        "alpha": lambda: gltf.json["materials"][0].update(alphaMode="FOG"),
+        "wrap": lambda: [gltf.json.update(samplers=[{"wrapS": 1}]),
+                         gltf.json["textures"][0].update(sampler=0)],
+    }  # fmt: skip
+    spoil[change]()
+    return gltf.glb()
+
+
+@pytest.mark.parametrize(
+    ("change", "expected"),
+    [
+        ("version", "expected glTF version 2, found '1.0'"),
+        ("no asset", "expected a member 'asset'"),
+        ("draco", "export it again without compression"),
+        ("meshopt", "export it again without compression"),
+        ("extension", "'ACME_magic'"),
+        ("accessor", "a.glb: accessors: expected an index below 3, found 99"),
+        ("negative", "attributes.POSITION: expected a non-negative integer, found -1"),
+        ("type", "expected a non-negative integer, found 'zero'"),
+        ("view end", "bufferViews[1]: expected an end within"),
+        ("count", "accessors[0]: expected an end within the 36 bytes of bufferView 1"),
+        ("stride", "accessors[0]: expected an end within"),
+        ("zeros", "accessors[0]: expected at most"),
+        ("component", "expected a componentType of"),
+        ("width", "expected type VEC3, found 'VEC2'"),
+        ("float indices", "accessors[0]: expected"),
+        ("index", "primitives[0]: expected vertex indices below 3, found 3"),
+        ("two indices", "expected a multiple of 3 indices, found 2"),
+        ("nan", "accessors[3]: expected finite numbers in element 2"),
+        ("uv count", "expected 3 texture coordinates, found 2"),
+        ("cycle", "nodes[0]: expected a node with one parent"),
+        ("children", "expected node indices in children"),
+        ("scene", "scenes: expected an index below 1, found 3"),
+        ("matrix", "nodes[0].matrix: expected 16 numbers"),
+        ("image", "images[0]"),
+        ("base64", "images[0]: expected base64"),
+        ("alpha", "expected an alphaMode"),
+        ("wrap", "expected wraps of"),
+    ],
+)
+def test_errors_name_the_place(change: str, expected: str):
+    with pytest.raises(MeshError) as caught:
+        read_gltf(broken(change), "a.glb", NOWHERE)
+    assert str(caught.value).startswith("a.glb: ")
+    assert expected in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("data", "expected"),
+    [
+        (b"glTF", "expected a GLB header"),
+        (b"glTF\1\0\0\0\x0c\0\0\0", "expected GLB version 2, found 1"),
+        (one_triangle().glb()[:-8], "file cut short"),
+        (b"glTF\2\0\0\0\x0c\0\0\0", "expected a JSON chunk first"),
+        (b"not json", "expected a glTF document in JSON"),
+        (b"[" * 100_000, "expected a glTF document in JSON"),
+        (b"[]", "expected a JSON object"),
+        (b"{}", "expected a member 'asset'"),
+        (b'{"asset": 3}', "asset: expected an object, found 3"),
+    ],
+)
+def test_malformed_containers(data: bytes, expected: str):
+    with pytest.raises(MeshError, match=expected):
+        read_gltf(data, "a.glb", NOWHERE)
+
+
+def test_a_missing_buffer_is_named():
+    document = json.loads(one_triangle().text())
+    document["buffers"][0]["uri"] = "gone.bin"
+    with pytest.raises(MeshError, match=r"buffers\[0\]: expected a binary file, found 'gone.bin'"):
+        read_gltf(json.dumps(document).encode(), "a.gltf", NOWHERE)
+
+
+WHOLE = textured().glb()
+VALUES = st.one_of(
+    st.none(), st.booleans(), st.integers(-2, 10), st.floats(), st.text(max_size=3),
+    st.lists(st.integers(0, 3), max_size=4), st.just({}), st.just(10**30),
+)  # fmt: skip
+
+
+def places(value: Any, path: tuple[Any, ...] = ()) -> list[tuple[Any, ...]]:
+    """The paths to everything in a JSON value."""
+    keys = (
+        value.keys() if isinstance(value, dict) else range(len(value) if type(value) is list else 0)
+    )
+    return [path, *(found for key in keys for found in places(value[key], (*path, key)))]
+
+
+DOCUMENT = json.loads(textured().text())
+
+
+@given(st.sampled_from(places(DOCUMENT)[1:]), VALUES)
+@settings(max_examples=300)
+def test_any_value_anywhere_gives_a_mesh_or_a_mesh_error(path: tuple[Any, ...], value: Any):
+    document = json.loads(json.dumps(DOCUMENT))
+    owner = document
+    for key in path[:-1]:
+        owner = owner[key]
+    owner[path[-1]] = value
+    found = outcome(read_gltf, json.dumps(document).encode(), "a.gltf", NOWHERE)
+    assert isinstance(found, TexturedMesh) or str(found).startswith("a.gltf:")
+
+
+@given(st.binary(max_size=30), st.integers(0, len(WHOLE)), st.integers(0, 30))
+def test_any_bytes_give_a_mesh_or_a_mesh_error(noise: bytes, at: int, removed: int):
+    data = WHOLE[:at] + noise + WHOLE[at + removed :]
+    for spoilt in (noise, data):
+        found = outcome(read_gltf, spoilt, "a.glb", NOWHERE)
+        assert isinstance(found, TexturedMesh | MeshError)

@@ -1,0 +1,108 @@
+from __future__ import annotations
+
+import struct
+from pathlib import Path
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from nispcodec.core.asset import TexturedMesh
+from nispcodec.core.errors import MeshError
+from nispcodec.io.folder import Folder
+from nispcodec.io.read.plain import read_off, read_stl
+from tests.io.files import outcome
+
+NOWHERE = Folder(Path("/nonexistent"))
+CORNERS = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]
+TEXT_STL = (
+    b"solid my part\n facet normal 0 0 1\n  outer loop\n   vertex 0 0 0\n   vertex 1 0 0\n"
+    b"   vertex 0 1 0\n  endloop\n endfacet\nendsolid\n"
+)
+OFF = b"OFF\n# a square\n4 1 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n4 0 1 2 3\n"
+
+
+def binary_stl(corners: list[list[float]], header: bytes = b"solid but binary") -> bytes:
+    facet = struct.pack("<12fH", 0, 0, 1, *[value for corner in corners for value in corner], 0)
+    return header.ljust(80, b"\0") + struct.pack("<I", 1) + facet
+
+
+def stl(data: bytes) -> TexturedMesh:
+    return read_stl(data, "a.stl", NOWHERE)
+
+
+def off(data: bytes) -> TexturedMesh:
+    return read_off(data, "a.off", NOWHERE)
+
+
+@pytest.mark.parametrize("data", [TEXT_STL, binary_stl(CORNERS), TEXT_STL.upper()])
+def test_stl(data: bytes):
+    mesh = stl(data)
+    assert mesh.corners.tolist() == [CORNERS]
+    assert not mesh.has_uv.any()
+
+
+@pytest.mark.parametrize(
+    "data",
+    [
+        OFF,
+        OFF.replace(b"OFF\n", b"OFF "),
+        OFF.replace(b"OFF\n", b"OFF").replace(b"# a square\n", b""),
+        OFF.replace(b"OFF", b"COFF").replace(b" 0\n", b" 0 255 0 0 255\n"),
+        OFF.replace(b"0 1 2 3", b"0 1 2 3 255 0 0"),
+        OFF.replace(b"\n", b"\r\n"),
+    ],
+)
+def test_off(data: bytes):
+    mesh = off(data)
+    assert len(mesh.positions) == 4
+    assert len(mesh.faces) == 2
+
+
+@pytest.mark.parametrize(
+    ("data", "expected"),
+    [
+        (b"", "a.stl: expected text"),
+        (binary_stl(CORNERS, b"")[:-1], "a.stl: expected text, or facets"),
+        (binary_stl([*CORNERS[:2], [0, float("nan"), 0]]), "a.stl: facet 0: expected finite"),
+        (TEXT_STL.replace(b"vertex 1", b"vertex inf"), "a.stl:5: expected 3"),
+        (TEXT_STL.replace(b"vertex 1 0 0", b"vertex 1 0"), "a.stl:5: expected 3"),
+        (TEXT_STL.replace(b"vertex 1 0 0\n", b""), "a.stl:6: expected three vertices"),
+        (TEXT_STL.split(b"   vertex 0 1")[0], "expected three vertices a facet"),
+    ],
+)
+def test_stl_errors_name_the_place(data: bytes, expected: str):
+    with pytest.raises(MeshError) as caught:
+        stl(data)
+    assert expected in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("data", "expected"),
+    [
+        (b"", "a.off:1: expected the keyword OFF"),
+        (b"PLY\n", "a.off:1: expected the keyword OFF"),
+        (b"OFF BINARY\n", "expected the keyword OFF and text"),
+        (b"OFF\nmany 2 3\n", "a.off:2: expected counts"),
+        (b"OFF\n", "expected counts"),
+        (OFF.replace(b"4 1 0", b"999999999 1 0"), "a.off: expected 999999999 vertices, found 5"),
+        (OFF.replace(b"4 1 0", b"4 2 0"), "expected 2 faces, found 1 before the end"),
+        (OFF.replace(b"1 1 0\n", b"1 nan 0\n"), "a.off:6: expected 3 or more finite numbers"),
+        (OFF.replace(b"2 3\n", b"2 4\n"), "a.off:8: expected a count from 3"),
+        (OFF.replace(b"2 3\n", b"2 -1\n"), "a.off:8: "),
+        (OFF.replace(b"2 3\n", b"2\n"), "a.off:8: "),
+        (OFF.replace(b"2 3\n", b"2 x\n"), "a.off:8: "),
+        (OFF.replace(b"4 0 1", b"2 0 1"), "a.off:8: "),
+    ],
+)
+def test_off_errors_name_the_line(data: bytes, expected: str):
+    with pytest.raises(MeshError) as caught:
+        off(data)
+    assert expected in str(caught.value)
+
+
+@given(st.binary(max_size=60), st.integers(0, 150))
+def test_any_bytes_give_a_mesh_or_a_mesh_error(noise: bytes, at: int):
+    for read, whole in ((stl, TEXT_STL), (stl, binary_stl(CORNERS)), (off, OFF)):
+        for data in (noise, whole[:at] + noise + whole[at + len(noise) :]):
+            assert isinstance(outcome(read, data), TexturedMesh | MeshError)

@@ -1,0 +1,120 @@
+from __future__ import annotations
+
+import struct
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from nispcodec.core.asset import TexturedMesh
+from nispcodec.core.errors import MeshError
+from nispcodec.io.folder import Folder
+from nispcodec.io.read.ply import read_ply
+from tests.io.files import image, outcome
+
+NOWHERE = Folder(Path("/nonexistent"))
+VERTEX = "element vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
+FACE = "element face {}\nproperty list uchar int vertex_indices\n"
+SQUARE = "0 0 0\n1 0 0\n1 1 0\n0 1 0\n"
+CORNERS = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]]
+
+
+def text(header: str, body: str, format: str = "ascii") -> bytes:
+    return f"ply\nformat {format} 1.0\n{header}end_header\n{body}".encode()
+
+
+def read(data: bytes, folder: Folder = NOWHERE) -> TexturedMesh:
+    return read_ply(data, "a.ply", folder)
+
+
+def test_text():
+    mesh = read(text(VERTEX + FACE.format(2), SQUARE + "3 0 1 2\n3 0 2 3\n"))
+    assert mesh.positions.tolist() == CORNERS
+    assert mesh.faces.tolist() == [[0, 1, 2], [0, 2, 3]]
+    assert not mesh.has_uv.any()
+
+
+def test_polygons():
+    mesh = read(text(VERTEX + FACE.format(2), SQUARE + "4 0 1 2 3\n3 3 2 1\n"))
+    assert len(mesh.faces) == 3
+
+
+@pytest.mark.parametrize(("format", "order"), [("little", "<"), ("big", ">")])
+def test_binary_with_columns_we_do_not_know(format: str, order: str):
+    header = "comment made by hand\n" + VERTEX + "property uchar quality\n" + FACE.format(1)
+    header += "property short flags\nelement edge 1\nproperty int vertex1\n"
+    body = b"".join(struct.pack(order + "fffB", *corner, 7) for corner in CORNERS)
+    body += struct.pack(order + "B4ih", 4, 0, 1, 2, 3, -1) + struct.pack(order + "i", 5)
+    mesh = read(text(header, "", f"binary_{format}_endian") + body)
+    assert mesh.positions.tolist() == CORNERS
+    assert len(mesh.faces) == 2
+
+
+@pytest.mark.parametrize("names", [("s", "t"), ("u", "v"), ("texture_u", "texture_v")])
+def test_vertex_uvs(names: tuple[str, str]):
+    header = VERTEX + "".join(f"property float {name}\n" for name in names) + FACE.format(1)
+    body = "0 0 0 .5 0\n1 0 0 1 .25\n1 1 0 0 7\n0 1 0 0 0\n3 0 1 2\n"
+    mesh = read(text(header, body))
+    assert mesh.corner_uvs[0].tolist() == [[0.5, 0], [1, 0.25], [0, 7]]
+
+
+def test_corner_uvs_and_their_textures(tmp_path: Path):
+    (tmp_path / "my wood.png").write_bytes(image())
+    header = "comment TextureFile my wood.png\ncomment TextureFile gone.png\n" + VERTEX
+    header += FACE.format(3) + "property list uchar float texcoord\nproperty int texnumber\n"
+    body = SQUARE + "4 0 1 2 3 8 0 0 1 0 1 1 0 1 0\n3 0 1 2 0 1\n3 2 1 0 6 .1 .2 .3 .4 .5 .6 1\n"
+    mesh = read(text(header, body), Folder(tmp_path))
+    np.testing.assert_array_equal(mesh.corners[:2, :, :2], mesh.corner_uvs[:2])
+    assert mesh.has_uv.tolist() == [True, True, False, True]
+    assert mesh.corner_uvs[3].tolist() == [[0.1, 0.2], [0.3, 0.4], [0.5, 0.6]]
+    assert mesh.face_materials.tolist() == [0, 0, 1, 1]
+    assert mesh.textures[mesh.materials[0].maps["base_color"].texture].data == image()
+    assert mesh.warnings == ("a.ply: image 'gone.png' not found",)
+
+
+def test_vertex_colours_are_left_out_with_a_warning():
+    header = VERTEX + "property uchar red\n" + FACE.format(1)
+    mesh = read(text(header, SQUARE.replace("\n", " 9\n") + "3 0 1 2\n"))
+    assert mesh.warnings == ("a.ply: left out vertex colours",)
+
+
+@pytest.mark.parametrize(
+    ("data", "expected"),
+    [
+        (b"plywood", "expected a header"),
+        (b"ply\nformat ascii 1.0\n", "expected a header"),
+        (text("", "", "ebcdic"), "expected a PLY format"),
+        (text("element vertex many\n", ""), "a.ply:3: expected a PLY header"),
+        (text("property float x\n", ""), "a.ply:3: expected a PLY header"),
+        (text("element vertex 1\nproperty complex x\n", ""), "a.ply:4: expected a PLY header"),
+        (text(VERTEX, SQUARE), "expected elements vertex and face"),
+        (text(VERTEX + FACE.format(1), SQUARE), "a.ply: face 0: expected numbers"),
+        (
+            text(VERTEX + FACE.format(1), SQUARE + "3 0 1 4"),
+            "face 0: expected vertex indices below",
+        ),
+        (text(VERTEX + FACE.format(2), SQUARE + "3 0 1 2 4 0 1 2 -1"), "face 1: expected vertex"),
+        (text(VERTEX + FACE.format(1), SQUARE + "2 0 1"), "face 0: expected three corners"),
+        (text(VERTEX + FACE.format(1), SQUARE + "-3 0 1"), "face 0: expected numbers"),
+        (text(VERTEX + FACE.format(0), "0 0 0 0 nan 0 0 0 0 1 1 1"), "vertex 1: expected finite"),
+        (text(VERTEX + FACE.format(0), "0 0 0 0 zero 0"), "vertex 1: expected numbers"),
+        (text(VERTEX.replace(" y", " why") + FACE.format(0), SQUARE), "expected vertex properties"),
+        (text(VERTEX, "", "binary_little_endian") + b"\0" * 40, "vertex 3: expected numbers"),
+        (text("element vertex 2000000000\nproperty char x\n", "1"), "vertex 1: expected numbers"),
+    ],
+)
+def test_errors_name_the_place(data: bytes, expected: str):
+    with pytest.raises(MeshError) as caught:
+        read(data)
+    assert str(caught.value).startswith("a.ply:")
+    assert expected in str(caught.value)
+
+
+@given(st.binary(max_size=60), st.integers(0, 400), st.sampled_from(["ascii", "binary_big_endian"]))
+def test_any_bytes_give_a_mesh_or_a_mesh_error(noise: bytes, at: int, format: str):
+    whole = text(VERTEX + FACE.format(1), SQUARE + "3 0 1 2\n", format)
+    for data in (noise, b"ply\n" + noise, whole[:at] + noise + whole[at + len(noise) :]):
+        found = outcome(read, data)
+        assert isinstance(found, TexturedMesh) or str(found).startswith("a.ply:")
