@@ -15,9 +15,9 @@ from pathlib import Path
 
 import click
 import numpy as np
-from numpy.typing import NDArray
 
 from benchmarks.machine import commit
+from nispcodec.core.arrays import Float64Array
 from nispcodec.core.network import Network
 from nispcodec.format import records, unpack, weights
 from nispcodec.format.constants import NETS
@@ -27,13 +27,13 @@ from nispcodec.train.quantise import GAUSSIAN_BITS, HEAD
 Record = dict[str, float]
 
 
-def symbols_of(network: Network) -> list[NDArray[np.float64]]:
+def symbols_of(network: Network) -> list[Float64Array]:
     """The integers of each tensor that are written."""
     every = records.tensors("network", network)
     return [tensor.values(tensor.octaves, True).astype(np.float64) for tensor in every]
 
 
-def entropy(symbols: NDArray[np.float64]) -> float:
+def entropy(symbols: Float64Array) -> float:
     """Bits of a tensor as the encoder counts them."""
     log_spread = 0.5 * np.log2(np.square(symbols).mean() + 1e-12) + GAUSSIAN_BITS
     return float(symbols.size * np.logaddexp2(0, 2 * log_spread) / 2) + HEAD

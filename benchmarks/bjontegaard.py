@@ -9,7 +9,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
+
+from nispcodec.core.arrays import Float64Array
 
 Pair = tuple[float, float]
 
@@ -40,7 +41,7 @@ def delta_rate(anchor: Sequence[Pair], tested: Sequence[Pair]) -> float | None:
     return float(np.exp(rates[1] - rates[0]) - 1)
 
 
-def front(pairs: Sequence[Pair]) -> NDArray[np.float64]:
+def front(pairs: Sequence[Pair]) -> Float64Array:
     """The pairs (k, 2) of which no other has fewer bytes and no larger error, cheapest first."""
     best: list[Pair] = []
     for size, error in sorted(pairs):

@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from benchmarks.source import Source
+from nispcodec.core.arrays import BoolArray, Float64Array, Int32Array, IntArray, Uint32Array
 from nispcodec.core.asset import TexturedMesh
 
 
@@ -15,19 +15,19 @@ from nispcodec.core.asset import TexturedMesh
 class Corners:
     """positions (n, 3) and uvs (n, 2) float64, materials (n,) int32, faces (m, 3) into these."""
 
-    positions: NDArray[np.float64]
-    uvs: NDArray[np.float64]
-    materials: NDArray[np.int32]
-    faces: NDArray[np.uint32]
+    positions: Float64Array
+    uvs: Float64Array
+    materials: Int32Array
+    faces: Uint32Array
 
-    def only(self, faces: NDArray[np.integer]) -> Corners:
+    def only(self, faces: IntArray) -> Corners:
         """Other faces (k, 3) over the same vertices, and of those only the ones in use."""
         used, renumbered = np.unique(faces, return_inverse=True)
         corners = renumbered.reshape(-1, 3).astype(np.uint32)
         return Corners(self.positions[used], self.uvs[used], self.materials[used], corners)
 
 
-def corners_of(mesh: TexturedMesh, chosen: NDArray[np.bool_] | None = None) -> Corners:
+def corners_of(mesh: TexturedMesh, chosen: BoolArray | None = None) -> Corners:
     """The (chosen) faces of a mesh; a corner without UV gets (0, 0)."""
     faces = np.flatnonzero(np.ones(len(mesh.faces), np.bool_) if chosen is None else chosen)
     materials = np.repeat(mesh.face_materials[faces], 3)

@@ -15,19 +15,17 @@ from pathlib import Path
 
 import click
 import numpy as np
-from numpy.typing import NDArray
 
 from benchmarks.codecs import CODECS, codec
 from benchmarks.machine import commit
 from benchmarks.source import Source
+from nispcodec.core.arrays import Float64Array, IndexArray
 from nispcodec.core.atomic_write import write_atomic
-
-Array = NDArray[np.float64]
 
 QUERIES, CLOUD, CANDIDATES = 100_000, 2_000_000, 24
 
 
-def sampled(triangles: Array, count: int, seed: int) -> tuple[Array, NDArray[np.intp]]:
+def sampled(triangles: Float64Array, count: int, seed: int) -> tuple[Float64Array, IndexArray]:
     """Points (count, 3) uniform over triangles (m, 3, 3), and the triangle of each."""
     generator = np.random.default_rng(seed)
     doubled = np.linalg.norm(_crosses(triangles), axis=1)
@@ -36,7 +34,7 @@ def sampled(triangles: Array, count: int, seed: int) -> tuple[Array, NDArray[np.
     return (weights[:, :, None] * triangles[owners]).sum(axis=1), owners
 
 
-def closest(points: Array, triangles: Array) -> Array:
+def closest(points: Float64Array, triangles: Float64Array) -> Float64Array:
     """The closest point (n, 3) of one triangle each (n, 3, 3): inside or on one of its sides."""
     a, b, c = triangles[:, 0], triangles[:, 1], triangles[:, 2]
     normals = _crosses(triangles)
@@ -50,11 +48,13 @@ def closest(points: Array, triangles: Array) -> Array:
     sides = [_on_segment(points, *ends) for ends in ((a, b), (b, c), (c, a))]
     distances = np.stack([np.linalg.norm(side - points, axis=1) for side in sides])
     nearest = np.stack(sides)[distances.argmin(axis=0), np.arange(len(points))]
-    chosen: Array = np.where(inside[:, None], flat, nearest)
+    chosen: Float64Array = np.where(inside[:, None], flat, nearest)
     return chosen
 
 
-def offsets(points: Array, triangles: Array) -> tuple[Array, NDArray[np.intp], Array]:
+def offsets(
+    points: Float64Array, triangles: Float64Array
+) -> tuple[Float64Array, IndexArray, Float64Array]:
     """From points (n, 3) to the closest of the surface, its triangle; to the nearest sample."""
     from scipy.spatial import cKDTree
 
@@ -68,7 +68,7 @@ def offsets(points: Array, triangles: Array) -> tuple[Array, NDArray[np.intp], A
     return best, found, cloud[near[:, 0]] - points
 
 
-def psnrs(original: Array, decoded: Array) -> dict[str, float]:
+def psnrs(original: Float64Array, decoded: Float64Array) -> dict[str, float]:
     """D1 and D2 of two surfaces (m, 3, 3) in any frame, dB, the worse direction."""
     normals = _crosses(original)
     normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-300)
@@ -84,21 +84,21 @@ def psnrs(original: Array, decoded: Array) -> dict[str, float]:
     return {name: min(values) for name, values in found.items()}
 
 
-def _db(squares: Array, peak: np.floating) -> float:
+def _db(squares: Float64Array, peak: np.floating) -> float:
     return float(10 * np.log10(peak**2 / squares.mean()))
 
 
-def _on_segment(points: Array, first: Array, second: Array) -> Array:
+def _on_segment(points: Float64Array, first: Float64Array, second: Float64Array) -> Float64Array:
     along = second - first
     length = np.maximum((along**2).sum(axis=1), 1e-300)
     share = np.clip(((points - first) * along).sum(axis=1) / length, 0, 1)
-    place: Array = first + share[:, None] * along
+    place: Float64Array = first + share[:, None] * along
     return place
 
 
-def _crosses(triangles: Array) -> Array:
+def _crosses(triangles: Float64Array) -> Float64Array:
     a, b, c = triangles[:, 0], triangles[:, 1], triangles[:, 2]
-    crosses: Array = np.cross(b - a, c - a)
+    crosses: Float64Array = np.cross(b - a, c - a)
     return crosses
 
 

@@ -20,12 +20,12 @@ from pathlib import Path
 
 import click
 import numpy as np
-from numpy.typing import NDArray
 
 from benchmarks.main_job import PRECISE
 from benchmarks.models import measured, models_options
 from benchmarks.soundness import counted, two_chart_triangles
 from benchmarks.target import Record, Target
+from nispcodec.core.arrays import Float32Array
 from nispcodec.core.asset import TexturedMesh
 from nispcodec.core.document import Document
 from nispcodec.core.network import Network, NetworkSpec
@@ -120,7 +120,7 @@ def query_speed(sdf: Network, chart: Network | None, uv: Network | None) -> Reco
     return record
 
 
-def chart_and_uv(chart: Network, uv: Network, points: NDArray[np.float32]) -> object:
+def chart_and_uv(chart: Network, uv: Network, points: Float32Array) -> object:
     """What a UV query costs: the chart is predicted first."""
     charts = classify(chart, points)
     return evaluate(uv, points, charts if uv.spec.conditioning != "none" else None)

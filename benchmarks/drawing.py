@@ -13,10 +13,10 @@ from benchmarks.codecs import codec
 from benchmarks.isolated import WorkFailed, isolated
 from benchmarks.source import Source
 from benchmarks.store import Record
+from nispcodec.core.arrays import Float32Array
 from nispcodec.core.asset import TexturedMesh
 from nispcodec.metrics.pictures import compare_pictures
 from nispcodec.render.camera import turntable
-from nispcodec.render.fragments import Floats
 from nispcodec.render.views import on_white, render_views
 
 VIEWS, SIZE = 4, 384
@@ -30,10 +30,10 @@ class Gallery:
     source: Source
 
     @cached_property
-    def original(self) -> list[Floats]:
+    def original(self) -> list[Float32Array]:
         """VIEWS pictures (SIZE, SIZE, 3)."""
         answer, _ = isolated(lambda: self._views(self.source.mesh))
-        pictures: list[Floats] = answer
+        pictures: list[Float32Array] = answer
         return pictures
 
     def drawn(self, record: Record, data: bytes) -> tuple[Record, bytes]:
@@ -48,12 +48,12 @@ class Gallery:
         means = {name: float(np.mean([each[name] for each in found])) for name in found[0]}
         return record | {"pictures": means}, as_webp(pictures[0])
 
-    def _views(self, mesh: TexturedMesh) -> list[Floats]:
+    def _views(self, mesh: TexturedMesh) -> list[Float32Array]:
         frame = self.source.reference.frame
         return [on_white(p) for p in render_views(mesh, turntable(VIEWS), SIZE, frame)]
 
 
-def as_webp(picture: Floats) -> bytes:
+def as_webp(picture: Float32Array) -> bytes:
     """(h, w, 3) in [0, 1] as the bytes of an image file."""
     pixels = (np.clip(picture, 0, 1) * np.float32(255) + np.float32(0.5)).astype(np.uint8)
     file = io.BytesIO()

@@ -23,6 +23,7 @@ from torch import Tensor
 import nispcodec
 from benchmarks.models import measured, models_options
 from benchmarks.target import Record, Target
+from nispcodec.core.arrays import Float32Array, Int64Array
 from nispcodec.core.asset import TexturedMesh
 from nispcodec.core.atomic_write import write_atomic
 from nispcodec.core.network import Network, NetworkSpec
@@ -42,7 +43,7 @@ from nispcodec.metrics.surface import Surface
 from nispcodec.model import NispModel
 from nispcodec.render.camera import Camera, turntable
 from nispcodec.render.field import OPENING
-from nispcodec.render.fragments import Floats, Indices, Scene
+from nispcodec.render.fragments import Scene
 from nispcodec.render.images import image_bytes
 from nispcodec.render.views import scene_of
 from nispcodec.train.backend.torch.module import Module
@@ -67,7 +68,7 @@ TARGETS = [
     Target("colour: dB above no charts", ("gains", "unconditioned"), 0, at_least=True),
 ]
 
-Painter = Callable[[Floats], Floats]
+Painter = Callable[[Float32Array], Float32Array]
 """Points (n, 3), normalised frame -> base colours (n, 3), sRGB-encoded."""
 
 
@@ -120,7 +121,7 @@ def _coloured(samples: SampleSet, surface: Surface) -> SampleSet:
 
 
 def _original_color(surface: Surface) -> Painter:
-    def paint(points: Floats) -> Floats:
+    def paint(points: Float32Array) -> Float32Array:
         closest = surface.closest(points.astype(np.float64))
         return color_at(surface, closest)[:, :3]
 
@@ -141,10 +142,10 @@ def without_charts(model: NispModel, uv: Network) -> NispModel:
 class Sight:
     """Where the model's surface is seen: pixels (n,) of a picture SIZE wide, points (n, 3)."""
 
-    pixels: Indices
-    points: Floats
+    pixels: Int64Array
+    points: Float32Array
 
-    def painted(self, paint: Painter) -> Floats:
+    def painted(self, paint: Painter) -> Float32Array:
         """(SIZE, SIZE, 3): the colours of the points on white, unlit."""
         colors = np.ones((SIZE * SIZE, 3), np.float32)
         colors[self.pixels] = np.clip(paint(self.points), 0, 1)
@@ -165,7 +166,7 @@ def sight(scene: Scene, camera: Camera) -> Sight:
 
 def compared(
     mesh: TexturedMesh, model: NispModel, networks: dict[str, Network]
-) -> tuple[Record, Floats]:
+) -> tuple[Record, Float32Array]:
     """The numbers, and the picture of all four side by side."""
     surface = Surface.of(mesh, model.document.frame)
     free = without_charts(model, networks["unconditioned"])
@@ -196,7 +197,7 @@ def compared(
     return {**numbers, "distortion": distortion}, np.concatenate(columns, axis=1)
 
 
-def _means(truth: list[Floats], drawn: list[Floats]) -> dict[str, float]:
+def _means(truth: list[Float32Array], drawn: list[Float32Array]) -> dict[str, float]:
     found = [compare_pictures(*pair) for pair in zip(truth, drawn, strict=True)]
     mse = [255**2 * float(((a - b) ** 2).mean()) for a, b in zip(truth, drawn, strict=True)]
     means = {name: float(np.mean([each[name] for each in found])) for name in found[0]}
@@ -207,7 +208,7 @@ def _decoded(model: NispModel) -> Surface:
     return Surface.of(model.to_mesh(), model.document.frame)
 
 
-def measure(path: Path, source: Path, seed: int, threads: int) -> tuple[Record, Floats]:
+def measure(path: Path, source: Path, seed: int, threads: int) -> tuple[Record, Float32Array]:
     """Everything about one asset, and the picture."""
     mesh, model = load_mesh(source), nispcodec.load(path)
     if not set(_UV) <= set(model.document.networks):

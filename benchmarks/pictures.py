@@ -20,11 +20,12 @@ import nispcodec
 from benchmarks.measure import run
 from benchmarks.models import measured, models_options
 from benchmarks.target import Record, Target
+from nispcodec.core.arrays import Float32Array
 from nispcodec.io.load import load_mesh
 from nispcodec.metrics.pictures import compare_pictures
 from nispcodec.model import NispModel
 from nispcodec.render.camera import turntable
-from nispcodec.render.fragments import Floats, Scene
+from nispcodec.render.fragments import Scene
 from nispcodec.render.maps import Maps
 from nispcodec.render.picture import Eye
 from nispcodec.render.views import on_white, render_views, scene_of
@@ -69,7 +70,7 @@ def likeness(original: Scene, model: Scene) -> Record:
     return {name: float(np.mean([each[name] for each in found])) for name in found[0]}
 
 
-def _compared(first: Floats, second: Floats) -> dict[str, float]:
+def _compared(first: Float32Array, second: Float32Array) -> dict[str, float]:
     squares = (first.astype(np.float64) - second) ** 2
     covered = (np.minimum(first, second) < 1).any(axis=2)
     return {

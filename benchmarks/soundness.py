@@ -11,8 +11,8 @@ from pathlib import Path
 
 import click
 import numpy as np
-from numpy.typing import NDArray
 
+from nispcodec.core.arrays import BoolArray, Float32Array, Int32Array, Int64Array
 from nispcodec.core.asset import TexturedMesh
 from nispcodec.core.document import Document
 from nispcodec.extract.meshing import textured_mesh
@@ -59,10 +59,10 @@ def two_chart_triangles(document: Document, mesh: TexturedMesh) -> int:
 def _agrees(
     document: Document,
     mesh: TexturedMesh,
-    points: NDArray[np.float32],
-    faces: NDArray[np.int64],
-    charts: NDArray[np.int32],
-) -> NDArray[np.bool_]:
+    points: Float32Array,
+    faces: Int64Array,
+    charts: Int32Array,
+) -> BoolArray:
     """Whether all corners of each face (f,) have the UVs that its chart gives them."""
     corners = points[mesh.faces[faces]].reshape(-1, 3)
     expected = asset_uv(document, corners, np.repeat(charts, 3)).reshape(-1, 3, 2)

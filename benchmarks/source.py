@@ -7,8 +7,8 @@ from functools import cached_property
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
+from nispcodec.core.arrays import BoolArray
 from nispcodec.core.asset import TexturedMesh
 from nispcodec.io.load import load_mesh
 from nispcodec.metrics.compare import Reference
@@ -50,7 +50,7 @@ class Source:
         return float(Reference.of(self.mesh, samples=ROUGH, seed=SEED).sides.hidden.mean())
 
     @cached_property
-    def outer_faces(self) -> NDArray[np.bool_]:
+    def outer_faces(self) -> BoolArray:
         """(m,): which faces can be seen from outside, wholly or in part."""
         surface = self.reference.surface
         outer = np.zeros(len(self.mesh.faces), dtype=np.bool_)

@@ -8,13 +8,12 @@ from typing import TYPE_CHECKING
 
 import click
 
+from nispcodec.core.arrays import AnyArray, Float64Array
+
 from .files import output_option
 
 if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
-
-    Answers = dict[str, NDArray[np.generic]]
+    Answers = dict[str, AnyArray]
 
 COLUMNS = "x,y,z,sdf,chart,u,v,red,green,blue,alpha"
 
@@ -50,7 +49,7 @@ def command(model: Path, points: Path, output: Path, frame: str) -> None:
     click.echo(f"{output}: {len(asked):,} points")
 
 
-def read_points(path: Path) -> NDArray[np.float64]:
+def read_points(path: Path) -> Float64Array:
     """(n, 3) float64 from an .npy or a .csv with or without a header line.
 
     Raises QueryError, naming the file, for anything else.
@@ -74,14 +73,14 @@ def read_points(path: Path) -> NDArray[np.float64]:
     return points.astype(np.float64)
 
 
-def _read_npy(path: Path) -> NDArray[np.generic]:
+def _read_npy(path: Path) -> AnyArray:
     import numpy as np
 
     with path.open("rb") as file:
         return np.lib.format.read_array(file, allow_pickle=False)
 
 
-def _read_csv(path: Path) -> NDArray[np.generic]:
+def _read_csv(path: Path) -> AnyArray:
     import numpy as np
 
     lines = path.read_text(encoding="utf-8").splitlines()
@@ -90,7 +89,7 @@ def _read_csv(path: Path) -> NDArray[np.generic]:
     return np.array(rows, dtype=np.float64).reshape(len(rows), -1)
 
 
-def _npz(points: NDArray[np.float64], answers: Answers) -> bytes:
+def _npz(points: Float64Array, answers: Answers) -> bytes:
     import numpy as np
 
     buffer = io.BytesIO()
@@ -98,7 +97,7 @@ def _npz(points: NDArray[np.float64], answers: Answers) -> bytes:
     return buffer.getvalue()
 
 
-def _csv(points: NDArray[np.float64], answers: Answers) -> bytes:
+def _csv(points: Float64Array, answers: Answers) -> bytes:
     import numpy as np
 
     buffer = io.StringIO()

@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING
 
 import click
 
+from nispcodec.core.arrays import Float32Array
+
 from .files import output_option
 from .progress import encode_progress
 
@@ -14,7 +16,6 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from nispcodec.render.camera import Camera
-    from nispcodec.render.fragments import Floats
 
 CHANNELS = ("color", "normal", "uv", "chart", "depth", "sdf-steps")
 
@@ -81,7 +82,7 @@ def command(
 
 def pictures(
     model: Path, cameras: list[Camera], size: int, channel: str, normal_map: bool
-) -> Iterator[Floats]:
+) -> Iterator[Float32Array]:
     """One picture a camera, with progress."""
     import nispcodec
     from nispcodec.core.progress import Progress

@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from nispcodec.core.arrays import Float32Array, Float64Array, Int32Array, IntArray
 from nispcodec.core.asset import TexturedMesh
 from nispcodec.core.document import Document
 from nispcodec.core.errors import QueryError
 from nispcodec.infer.evaluate import classify, evaluate, gradient
-
-Floats = NDArray[np.float32]
-Integers = NDArray[np.int32]
 
 FRAMES = ("world", "normalised")
 PROJECTION_STEPS = 8
@@ -29,16 +27,16 @@ class NispModel:
 
     def __init__(self, document: Document) -> None:
         self.document = document
-        self._images: dict[int, Floats] = {}
+        self._images: dict[int, Float32Array] = {}
 
-    def sdf(self, points: ArrayLike, frame: str = "world") -> Floats:
+    def sdf(self, points: ArrayLike, frame: str = "world") -> Float32Array:
         """Signed distance to the surface (n,) float32, negative inside, in the units of `frame`."""
         scale = np.float32(self.document.frame.radius if frame == "world" else 1)
-        values: Floats = evaluate(self.document.sdf, self._normalised(points, frame))[:, 0]
+        values: Float32Array = evaluate(self.document.sdf, self._normalised(points, frame))[:, 0]
         values *= scale
         return values
 
-    def normals(self, points: ArrayLike, frame: str = "world") -> Floats:
+    def normals(self, points: ArrayLike, frame: str = "world") -> Float32Array:
         """Unit gradient of the SDF (n, 3) float32, pointing outwards; 0 where the SDF is flat."""
         _, slopes = gradient(self.document.sdf, self._normalised(points, frame))
         lengths = np.linalg.norm(slopes, axis=1, keepdims=True)
@@ -46,18 +44,18 @@ class NispModel:
         np.divide(slopes, lengths, out=units, where=lengths > 0)
         return units
 
-    def charts(self, points: ArrayLike, frame: str = "world") -> Integers:
+    def charts(self, points: ArrayLike, frame: str = "world") -> Int32Array:
         """The chart that each point belongs to (n,) int32, into `document.charts`."""
         return self._charts(self._normalised(points, frame))
 
     @property
-    def chart_materials(self) -> Integers:
+    def chart_materials(self) -> Int32Array:
         """The material of each chart (k,) int32, into the document's materials."""
         return self.document.charts.materials
 
     def uv(
-        self, points: ArrayLike, frame: str = "world", charts: NDArray[np.integer] | None = None
-    ) -> Floats:
+        self, points: ArrayLike, frame: str = "world", charts: IntArray | None = None
+    ) -> Float32Array:
         """Texture coordinates (n, 2) float32, origin bottom-left, in the asset's UV range.
 
         `charts` (n,) overrides the predicted charts. Points on charts without UV get (0, 0).
@@ -65,7 +63,7 @@ class NispModel:
         normalised = self._normalised(points, frame)
         return self._uv(normalised, self._charts(normalised) if charts is None else charts)
 
-    def color(self, points: ArrayLike, frame: str = "world") -> Floats:
+    def color(self, points: ArrayLike, frame: str = "world") -> Float32Array:
         """Base colour (n, 4) float32 RGBA in [0, 1]: RGB is sRGB-encoded, alpha linear.
 
         The base colour texture at the point's UV, filtered and wrapped as its material says, times
@@ -83,7 +81,7 @@ class NispModel:
             colors[keys == key] = self._base_color(key, uvs[keys == key])
         return colors
 
-    def project(self, points: ArrayLike, frame: str = "world") -> NDArray[np.float64]:
+    def project(self, points: ArrayLike, frame: str = "world") -> Float64Array:
         """The points moved along the gradient onto the surface (n, 3) float64, in `frame`.
 
         Newton steps on the fitted field: exact near the surface, approximate far from it.
@@ -117,18 +115,18 @@ class NispModel:
 
         return textured_mesh(self.document, resolution, faces, error, keep_spurious)[0]
 
-    def _charts(self, normalised: Floats, among: int | None = None) -> Integers:
+    def _charts(self, normalised: Float32Array, among: int | None = None) -> Int32Array:
         network = self.document.chart
         if network is None:
             return np.zeros(len(normalised), np.int32)
         return classify(network, normalised, among)
 
-    def _uv(self, normalised: Floats, charts: NDArray[np.integer]) -> Floats:
+    def _uv(self, normalised: Float32Array, charts: IntArray) -> Float32Array:
         from nispcodec.infer.texture_coordinates import asset_uv
 
         return asset_uv(self.document, normalised, charts)
 
-    def _base_color(self, key: int, uvs: Floats) -> Floats:
+    def _base_color(self, key: int, uvs: Float32Array) -> Float32Array:
         from nispcodec.core.texture import base_color
 
         material = self.document.materials[key if key >= 0 else -1 - key]
@@ -136,14 +134,14 @@ class NispModel:
         image = None if used is None else self._image(used.texture)
         return base_color(material, image, uvs)
 
-    def _image(self, texture: int) -> Floats:
+    def _image(self, texture: int) -> Float32Array:
         from nispcodec.core.texture import decode_image
 
         if texture not in self._images:
             self._images[texture] = decode_image(self.document.textures[texture])
         return self._images[texture]
 
-    def _normalised(self, points: ArrayLike, frame: str) -> Floats:
+    def _normalised(self, points: ArrayLike, frame: str) -> Float32Array:
         if frame not in FRAMES:
             raise QueryError(f"frame: expected one of {', '.join(FRAMES)}, found {frame!r}")
         array = np.asarray(points)

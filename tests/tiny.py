@@ -5,16 +5,14 @@ from __future__ import annotations
 from io import BytesIO
 
 import numpy as np
-from numpy.typing import NDArray
 
+from nispcodec.core.arrays import FloatArray, Uint8Array
 from nispcodec.core.asset import Material, Texture, TextureMap
 from nispcodec.core.document import ChartTable, Document, Frame
 from nispcodec.core.network import Network, NetworkSpec
 
 
-def relu_network(
-    layers: list[tuple[NDArray[np.floating], NDArray[np.floating]]], **options: object
-) -> Network:
+def relu_network(layers: list[tuple[FloatArray, FloatArray]], **options: object) -> Network:
     """A ReLU network with the given (weight, bias) pairs."""
     hidden = tuple(len(bias) for _, bias in layers[:-1])
     spec = NetworkSpec(hidden, len(layers[-1][1]), activation="relu", **options)  # type: ignore[arg-type]
@@ -90,7 +88,7 @@ def plane_uv(charts: int) -> Network:
     return Network(spec, {name: tensor.astype(np.float32) for name, tensor in tensors.items()})
 
 
-def png(pixels: NDArray[np.uint8], name: str = "tiny.png") -> Texture:
+def png(pixels: Uint8Array, name: str = "tiny.png") -> Texture:
     """A texture with exactly these pixels, first row on top."""
     from PIL import Image
 

@@ -10,11 +10,11 @@ from collections.abc import Sequence
 
 import DracoPy
 import numpy as np
-from numpy.typing import NDArray
 
 from benchmarks.codecs import Setting
 from benchmarks.corners import Corners, corners_of, mesh_of
 from benchmarks.source import Source
+from nispcodec.core.arrays import AnyArray
 from nispcodec.core.asset import TexturedMesh
 
 LEVEL = 10
@@ -53,7 +53,7 @@ def encode_corners(corners: Corners, setting: Setting) -> bytes:
 def decode(data: bytes, source: Source) -> TexturedMesh:
     """The mesh in a buffer."""
     found = DracoPy.decode(data)
-    parts: dict[int, NDArray[np.generic]]
+    parts: dict[int, AnyArray]
     parts = {part["attribute_type"]: part["data"] for part in found.attributes}
     materials = parts.get(MATERIAL, np.zeros((len(parts[POSITION]), 1), np.uint8))[:, 0]
     positions, uvs = (parts[part].astype(np.float64) for part in (POSITION, UV))

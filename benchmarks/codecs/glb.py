@@ -8,11 +8,11 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from benchmarks.codecs import Setting
 from benchmarks.corners import corners_of
 from benchmarks.source import Source
+from nispcodec.core.arrays import AnyArray
 from nispcodec.core.asset import TexturedMesh
 from nispcodec.io.folder import Folder
 from nispcodec.io.read.gltf import read_gltf
@@ -72,9 +72,7 @@ def with_materials(mesh: TexturedMesh, source: Source) -> TexturedMesh:
     )
 
 
-def _accessor(
-    tree: dict[str, Any], blob: bytearray, array: NDArray[np.generic], target: int
-) -> int:
+def _accessor(tree: dict[str, Any], blob: bytearray, array: AnyArray, target: int) -> int:
     blob += b"\0" * (-len(blob) % 4)
     view = {"buffer": 0, "byteOffset": len(blob), "byteLength": array.nbytes, "target": target}
     tree["bufferViews"].append(view)

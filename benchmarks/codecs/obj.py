@@ -5,11 +5,11 @@ from __future__ import annotations
 from math import ceil, log10
 
 import numpy as np
-from numpy.typing import NDArray
 
 from benchmarks.codecs import Setting
 from benchmarks.codecs.glb import with_materials
 from benchmarks.source import Source
+from nispcodec.core.arrays import AnyArray
 from nispcodec.core.asset import TexturedMesh
 from nispcodec.io.folder import Folder
 from nispcodec.io.read.obj import read_obj
@@ -51,5 +51,5 @@ def decode(data: bytes, source: Source) -> TexturedMesh:
     return with_materials(read_obj(data, source.path.name, Folder(source.path.parent)), source)
 
 
-def _rows(pattern: str, values: NDArray[np.generic]) -> str:
+def _rows(pattern: str, values: AnyArray) -> str:
     return (pattern * len(values)) % tuple(values.ravel().tolist())

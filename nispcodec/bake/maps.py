@@ -6,9 +6,9 @@ So points of several materials can share one texture, as a new atlas wants it.
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from nispcodec.bake.tangents import Frames
+from nispcodec.core.arrays import Float32Array, Float64Array, Int32Array
 from nispcodec.core.asset import SLOTS, Material
 from nispcodec.core.texture import decode_image, linear_to_srgb, sample_texture, srgb_to_linear
 from nispcodec.model import NispModel
@@ -19,10 +19,6 @@ WHITE = (1.0, 1.0, 1.0, 1.0)
 # How far to go, in radii, to see which way a UV grows.
 STEP = 2e-3
 
-Floats = NDArray[np.float32]
-Doubles = NDArray[np.float64]
-Integers = NDArray[np.int32]
-
 
 def further_slots(model: NispModel) -> tuple[str, ...]:
     """The slots besides the base colour for which a material has a map."""
@@ -30,7 +26,7 @@ def further_slots(model: NispModel) -> tuple[str, ...]:
     return tuple(slot for slot in SLOTS[1:] if any(slot in each.maps for each in materials))
 
 
-def baked_maps(model: NispModel, points: Doubles, frames: Frames) -> dict[str, Floats]:
+def baked_maps(model: NispModel, points: Float64Array, frames: Frames) -> dict[str, Float32Array]:
     """Texels (n, 3) in [0, 1], as stored in images, of every further slot at world points (n, 3).
 
     Normals are turned from the directions of the old UVs into those of `frames`.
@@ -44,7 +40,7 @@ def baked_maps(model: NispModel, points: Doubles, frames: Frames) -> dict[str, F
     return baked
 
 
-def _texels(model: NispModel, slot: str, charts: Integers, uvs: Floats) -> Floats:
+def _texels(model: NispModel, slot: str, charts: Int32Array, uvs: Float32Array) -> Float32Array:
     document = model.document
     has_uv, owners = document.charts.has_uv[charts], document.charts.materials[charts]
     texels = np.empty((len(charts), 3), np.float32)
@@ -60,7 +56,7 @@ def _texels(model: NispModel, slot: str, charts: Integers, uvs: Floats) -> Float
     return texels
 
 
-def _finished(slot: str, material: Material, texels: Floats) -> Floats:
+def _finished(slot: str, material: Material, texels: Float32Array) -> Float32Array:
     """Texels with the material's factors and strength; for normals vectors of any length."""
     strength = material.maps[slot].strength if slot in material.maps else 1.0
     if slot == "metallic_roughness":
@@ -74,8 +70,12 @@ def _finished(slot: str, material: Material, texels: Floats) -> Floats:
 
 
 def _turned(
-    model: NispModel, normals: Floats, points: Doubles, charts: Integers, frames: Frames
-) -> Floats:
+    model: NispModel,
+    normals: Float32Array,
+    points: Float64Array,
+    charts: Int32Array,
+    frames: Frames,
+) -> Float32Array:
     """Normals (n, 3) of the old tangent space in the new one: both lie in the same plane.
 
     So x and y are turned, and mirrored where the old UVs are, by how the old u and v grow along the
@@ -93,5 +93,5 @@ def _turned(
     right /= np.linalg.norm(right, axis=1, keepdims=True)
     up = np.stack([-right[:, 1], right[:, 0]], axis=1) * mirrored[:, None]
     turned = np.column_stack([normals[:, :1] * right + normals[:, 1:2] * up, normals[:, 2]])
-    units: Floats = turned / np.maximum(np.linalg.norm(turned, axis=1, keepdims=True), 1e-6)
+    units: Float32Array = turned / np.maximum(np.linalg.norm(turned, axis=1, keepdims=True), 1e-6)
     return units.astype(np.float32)

@@ -6,10 +6,10 @@ from dataclasses import replace
 from io import BytesIO
 
 import numpy as np
-from numpy.typing import NDArray
 
 from nispcodec.bake.maps import baked_maps, further_slots
 from nispcodec.bake.tangents import frames_at
+from nispcodec.core.arrays import Float32Array
 from nispcodec.core.asset import Material, Texture, TexturedMesh, TextureMap
 from nispcodec.core.errors import MeshError
 from nispcodec.core.raster import Texels, padded, texels
@@ -49,7 +49,7 @@ def rebaked(model: NispModel, mesh: TexturedMesh, size: int = 1024) -> TexturedM
     )
 
 
-def _png(values: NDArray[np.float32], found: Texels, size: int) -> bytes:
+def _png(values: Float32Array, found: Texels, size: int) -> bytes:
     """An image of the texels' values (n, c), which lie in [0, 1]."""
     from PIL import Image
 

@@ -5,13 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from nispcodec.core.arrays import Float64Array, Int32Array
 from nispcodec.core.asset import TexturedMesh
 from nispcodec.io.write.vertices import vertex_normals
-
-Doubles = NDArray[np.float64]
-Integers = NDArray[np.int32]
 
 
 @dataclass(frozen=True)
@@ -21,11 +18,11 @@ class Frames:
     tangents: u grows; bitangents: v grows, v upwards in the image as in OBJ.
     """
 
-    tangents: Doubles
-    bitangents: Doubles
+    tangents: Float64Array
+    bitangents: Float64Array
 
 
-def frames_at(mesh: TexturedMesh, faces: Integers, weights: Doubles) -> Frames:
+def frames_at(mesh: TexturedMesh, faces: Int32Array, weights: Float64Array) -> Frames:
     """The frames at barycentric `weights` (n, 3) in `faces` (n,), all of which have UVs.
 
     Directions of u are averaged over the faces that share a UV and made square to the averaged
@@ -41,7 +38,7 @@ def frames_at(mesh: TexturedMesh, faces: Integers, weights: Doubles) -> Frames:
     return Frames(tangent, np.cross(normal, tangent) * mirrored[faces][:, None])
 
 
-def _directions(mesh: TexturedMesh) -> tuple[Doubles, Doubles]:
+def _directions(mesh: TexturedMesh) -> tuple[Float64Array, Float64Array]:
     """Unit direction of growing u on each face (m, 3); -1 where the face is mirrored, else 1."""
     a, b, c = mesh.corners.transpose(1, 0, 2)
     first, second = (mesh.corner_uvs[:, 1:] - mesh.corner_uvs[:, :1]).transpose(1, 0, 2)
@@ -50,6 +47,8 @@ def _directions(mesh: TexturedMesh) -> tuple[Doubles, Doubles]:
     return _unit(along * mirrored[:, None]), mirrored
 
 
-def _unit(vectors: Doubles) -> Doubles:
-    units: Doubles = vectors / np.maximum(np.linalg.norm(vectors, axis=1, keepdims=True), 1e-300)
+def _unit(vectors: Float64Array) -> Float64Array:
+    units: Float64Array = vectors / np.maximum(
+        np.linalg.norm(vectors, axis=1, keepdims=True), 1e-300
+    )
     return units

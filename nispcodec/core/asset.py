@@ -10,12 +10,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
 
+from nispcodec.core.arrays import AnyArray, BoolArray, Float64Array, Int32Array
 from nispcodec.core.errors import MeshError
-
-FloatArray = NDArray[np.float64]
-IndexArray = NDArray[np.int32]
 
 SLOTS = ("base_color", "normal", "metallic_roughness", "occlusion", "emissive")
 WRAPS = ("repeat", "clamp", "mirror")
@@ -78,11 +75,11 @@ class TexturedMesh:
     warnings       what the reader had to leave out or guess, one sentence each
     """
 
-    positions: FloatArray
-    faces: IndexArray
-    uvs: FloatArray
-    uv_faces: IndexArray
-    face_materials: IndexArray
+    positions: Float64Array
+    faces: Int32Array
+    uvs: Float64Array
+    uv_faces: Int32Array
+    face_materials: Int32Array
     materials: tuple[Material, ...] = (Material(),)
     textures: tuple[Texture, ...] = ()
     name: str = "mesh"
@@ -100,25 +97,23 @@ class TexturedMesh:
         _expect_range("face_materials", self.face_materials, 0, len(self.materials))
 
     @property
-    def corners(self) -> FloatArray:
+    def corners(self) -> Float64Array:
         """(m, 3, 3) float64: the positions of every face's corners."""
         return self.positions[self.faces]
 
     @property
-    def corner_uvs(self) -> FloatArray:
+    def corner_uvs(self) -> Float64Array:
         """(m, 3, 2) float64: the UVs of every face's corners; zeros where a face has none."""
         padded = np.vstack([self.uvs, np.zeros((1, 2))])
         return padded[self.uv_faces]
 
     @property
-    def has_uv(self) -> NDArray[np.bool_]:
+    def has_uv(self) -> BoolArray:
         """(m,) bool: which faces carry UVs."""
         return np.asarray((self.uv_faces >= 0).all(axis=1))
 
 
-def _expect(
-    name: str, array: NDArray[np.generic], shape: tuple[int | None, ...], dtype: type
-) -> None:
+def _expect(name: str, array: AnyArray, shape: tuple[int | None, ...], dtype: type) -> None:
     shape_fits = array.ndim == len(shape) and all(
         want is None or want == got for want, got in zip(shape, array.shape, strict=True)
     )
@@ -131,7 +126,7 @@ def _expect(
         raise MeshError(f"{name}: expected finite numbers, found NaN or infinity")
 
 
-def _expect_range(name: str, indices: IndexArray, low: int, high: int) -> None:
+def _expect_range(name: str, indices: Int32Array, low: int, high: int) -> None:
     if indices.size and (indices.min() < low or indices.max() >= high):
         raise MeshError(
             f"{name}: expected indices from {low} to {high - 1}, "

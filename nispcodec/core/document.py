@@ -6,8 +6,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
 
+from nispcodec.core.arrays import BoolArray, Float64Array, FloatArray, Int32Array
 from nispcodec.core.asset import Material, Texture
 from nispcodec.core.errors import FormatError
 from nispcodec.core.network import MAX_CHARTS, Network
@@ -20,11 +20,11 @@ class Frame:
     center: tuple[float, float, float]
     radius: float
 
-    def to_world(self, points: NDArray[np.floating]) -> NDArray[np.float64]:
+    def to_world(self, points: FloatArray) -> Float64Array:
         """(n, 3) normalised -> (n, 3) world."""
         return np.asarray(points, dtype=np.float64) * self.radius + np.asarray(self.center)
 
-    def to_normalised(self, points: NDArray[np.floating]) -> NDArray[np.float64]:
+    def to_normalised(self, points: FloatArray) -> Float64Array:
         """(n, 3) world -> (n, 3) normalised."""
         return (np.asarray(points, dtype=np.float64) - np.asarray(self.center)) / self.radius
 
@@ -38,8 +38,8 @@ class ChartTable:
     With `openings` the last chart is no part of the asset: it is where the SDF closes openings.
     """
 
-    materials: NDArray[np.int32]
-    has_uv: NDArray[np.bool_]
+    materials: Int32Array
+    has_uv: BoolArray
     uv_offset: tuple[float, float] = (0.0, 0.0)
     uv_scale: tuple[float, float] = (1.0, 1.0)
     openings: bool = False

@@ -7,9 +7,8 @@ file has to say of them is how far they went.
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
-Integers = NDArray[np.int64]
+from nispcodec.core.arrays import Int64Array, Uint64Array
 
 BITS = 23
 """Draws are integers from -2^BITS to below 2^BITS."""
@@ -17,7 +16,7 @@ BITS = 23
 _GAMMA = np.uint64(0x9E3779B97F4A7C15)
 
 
-def draws(number: int, first: int, count: int) -> Integers:
+def draws(number: int, first: int, count: int) -> Int64Array:
     """(count,) the draws of this number from the place `first` on.
 
     SplitMix64 (Steele, Lea, Flood, "Fast splittable pseudorandom number generators", 2014).
@@ -28,12 +27,12 @@ def draws(number: int, first: int, count: int) -> Integers:
     return found.astype(np.int64) - (1 << BITS)
 
 
-def told(drawn: Integers, reach: int, octaves: Integers) -> Integers:
+def told(drawn: Int64Array, reach: int, octaves: Int64Array) -> Int64Array:
     """What draws let expect of symbols: `reach` times the draw in [-1, 1), in steps of 2^octave."""
     return (reach * drawn + (1 << BITS - 1 + octaves)) >> BITS + octaves
 
 
-def _mixed(state: NDArray[np.uint64]) -> NDArray[np.uint64]:
+def _mixed(state: Uint64Array) -> Uint64Array:
     state = (state ^ state >> np.uint64(30)) * np.uint64(0xBF58476D1CE4E5B9)
     state = (state ^ state >> np.uint64(27)) * np.uint64(0x94D049BB133111EB)
     return state ^ state >> np.uint64(31)

@@ -12,12 +12,10 @@ from dataclasses import dataclass, field
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 
+from nispcodec.core.arrays import Float32Array, Int64Array
 from nispcodec.core.errors import FormatError
-from nispcodec.core.initial_weights import Integers, draws
-
-Weights = NDArray[np.float32]
+from nispcodec.core.initial_weights import draws
 
 ENCODINGS = ("identity", "fourier")
 CONDITIONINGS = ("none", "scalar", "embedding", "frames")
@@ -125,7 +123,7 @@ class NetworkSpec:
             shapes[f"bias.{layer}"] = (fan_out,)
         return shapes
 
-    def drawn(self, names: Iterable[str]) -> dict[str, Integers]:
+    def drawn(self, names: Iterable[str]) -> dict[str, Int64Array]:
         """The draws that each of these tensors begins from, in its shape."""
         shapes, first = self.shapes, 0
         places: dict[str, int] = {}
@@ -152,7 +150,7 @@ class Network:
     """
 
     spec: NetworkSpec
-    tensors: Mapping[str, Weights]
+    tensors: Mapping[str, Float32Array]
     steps: Mapping[str, float] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
@@ -167,7 +165,7 @@ class Network:
                 raise FormatError("network", name, "finite weights", "NaN or infinity")
 
     @property
-    def layers(self) -> list[tuple[Weights, Weights]]:
+    def layers(self) -> list[tuple[Float32Array, Float32Array]]:
         """(weight (out, in), bias (out,)) of every layer, first to last."""
         count = len(self.spec.hidden) + 1
         return [(self.tensors[f"weight.{i}"], self.tensors[f"bias.{i}"]) for i in range(count)]

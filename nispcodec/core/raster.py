@@ -6,25 +6,23 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
+
+from nispcodec.core.arrays import BoolArray, Float64Array, Int32Array, Uint8Array
 
 CANDIDATES = 1 << 21
-
-Floats = NDArray[np.float64]
-Integers = NDArray[np.int32]
 
 
 @dataclass(frozen=True)
 class Texels:
     """Texels that a face covers: row, column and face (n,), barycentric weights (n, 3)."""
 
-    rows: Integers
-    columns: Integers
-    faces: Integers
-    weights: Floats
+    rows: Int32Array
+    columns: Int32Array
+    faces: Int32Array
+    weights: Float64Array
 
 
-def texels(corner_uvs: Floats, height: int, width: int) -> Texels:
+def texels(corner_uvs: Float64Array, height: int, width: int) -> Texels:
     """Every texel of an image whose centre a face covers; the last face where several do.
 
     corner_uvs (m, 3, 2), v upwards, within [0, 1].
@@ -38,7 +36,7 @@ def texels(corner_uvs: Floats, height: int, width: int) -> Texels:
     return Texels(rows, columns, owners[rows, columns], weights[rows, columns])
 
 
-def coverage(corner_uvs: Floats, height: int, width: int) -> NDArray[np.bool_]:
+def coverage(corner_uvs: Float64Array, height: int, width: int) -> BoolArray:
     """(height, width): which texels' centres a face covers; corner_uvs as `texels` has them."""
     covered = np.zeros((height, width), np.bool_)
     for rows, columns, _, _ in _covered(corner_uvs, height, width):
@@ -46,7 +44,7 @@ def coverage(corner_uvs: Floats, height: int, width: int) -> NDArray[np.bool_]:
     return covered
 
 
-def padded(image: NDArray[np.uint8], covered: NDArray[np.bool_]) -> NDArray[np.uint8]:
+def padded(image: Uint8Array, covered: BoolArray) -> Uint8Array:
     """The image (h, w, c) with the nearest covered texel's colour wherever none is covered."""
     from scipy.ndimage import distance_transform_edt
 
@@ -57,10 +55,10 @@ def padded(image: NDArray[np.uint8], covered: NDArray[np.bool_]) -> NDArray[np.u
 
 
 def _covered(
-    corner_uvs: Floats, height: int, width: int
-) -> Iterator[tuple[Integers, Integers, Integers, Floats]]:
+    corner_uvs: Float64Array, height: int, width: int
+) -> Iterator[tuple[Int32Array, Int32Array, Int32Array, Float64Array]]:
     """Texels inside of faces: rows, columns, faces (n,), barycentric weights (n, 3)."""
-    pixels: Floats = corner_uvs * [width, -height] + [0.0, height]
+    pixels: Float64Array = corner_uvs * [width, -height] + [0.0, height]
     for faces, x, y in _candidates(pixels, height, width):
         shares = _barycentric(pixels[faces], np.column_stack([x + 0.5, y + 0.5]))
         inside = (shares >= -1e-9).all(axis=1)
@@ -68,8 +66,8 @@ def _covered(
 
 
 def _candidates(
-    pixels: Floats, height: int, width: int
-) -> Iterator[tuple[Integers, Integers, Integers]]:
+    pixels: Float64Array, height: int, width: int
+) -> Iterator[tuple[Int32Array, Int32Array, Int32Array]]:
     """Faces with the texels of their bounding boxes (face, x, y), some millions at a time."""
     last = [width - 1, height - 1]
     low = np.clip(np.floor(pixels.min(axis=1)), 0, last).astype(np.int32)
@@ -86,7 +84,7 @@ def _candidates(
         yield faces.astype(np.int32), x.astype(np.int32), y.astype(np.int32)
 
 
-def _barycentric(triangles: Floats, points: Floats) -> Floats:
+def _barycentric(triangles: Float64Array, points: Float64Array) -> Float64Array:
     """Weights (n, 3) of points (n, 2) in triangles (n, 3, 2); -1 in triangles without area."""
     a, b, c = triangles.transpose(1, 0, 2)
     u, v, w = b - a, c - a, points - a

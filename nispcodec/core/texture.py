@@ -15,22 +15,28 @@ from pathlib import PurePath
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
+from nispcodec.core.arrays import (
+    BoolArray,
+    Float32Array,
+    Float64Array,
+    FloatArray,
+    IndexArray,
+    IntArray,
+    Uint8Array,
+)
 from nispcodec.core.asset import Material, Texture
 from nispcodec.core.errors import MeshError
 
 if TYPE_CHECKING:
     import PIL.Image
 
-Image = NDArray[np.float32]
-Coordinates = NDArray[np.floating]
 
 # What Pillow's readers raise for malformed files.
 _BROKEN = (OSError, ValueError, SyntaxError, EOFError, struct.error)
 
 
-def decode_image(texture: Texture) -> Image:
+def decode_image(texture: Texture) -> Float32Array:
     """The texture's pixels: (h, w, 4) float32 in [0, 1], RGBA as stored, top row first.
 
     Grey, palette and 16-bit images are widened; an image without alpha gets alpha 1.
@@ -74,12 +80,12 @@ def _reencoded(texture: Texture, kind: str, quality: int) -> Texture:
     return Texture(name, encode_image(pixels, kind, quality), f"image/{kind}")
 
 
-def image_bytes(texture: Texture) -> NDArray[np.uint8]:
+def image_bytes(texture: Texture) -> Uint8Array:
     """As `decode_image`, in 0 to 255."""
     return np.rint(decode_image(texture) * 255).astype(np.uint8)
 
 
-def encode_image(pixels: NDArray[np.uint8], kind: str, quality: int) -> bytes:
+def encode_image(pixels: Uint8Array, kind: str, quality: int) -> bytes:
     """A file of pixels (h, w, 4): `kind` "png", which has no quality, "webp", "avif" or "jpeg"."""
     import PIL.Image
 
@@ -89,16 +95,16 @@ def encode_image(pixels: NDArray[np.uint8], kind: str, quality: int) -> bytes:
     return file.getvalue()
 
 
-def _is_opaque(pixels: NDArray[np.uint8]) -> bool:
+def _is_opaque(pixels: Uint8Array) -> bool:
     return bool((pixels[..., 3] == 255).all())
 
 
 def sample_texture(
-    image: Image,
-    uv: Coordinates,
+    image: Float32Array,
+    uv: FloatArray,
     wrap: tuple[str, str] = ("repeat", "repeat"),
     filter: str = "linear",
-) -> Image:
+) -> Float32Array:
     """Colours (n, c) float32 of an (h, w, c) image at (n, 2) finite UVs, origin bottom-left.
 
     Texel centres lie at half-integers, as in OpenGL and glTF; `wrap` and `filter` are those of
@@ -119,7 +125,7 @@ def sample_texture(
     return _mix(above, below, low)
 
 
-def base_color(material: Material, image: Image | None, uv: Coordinates) -> Image:
+def base_color(material: Material, image: Float32Array | None, uv: FloatArray) -> Float32Array:
     """Base colour (n, 4) float32 at (n, 2) UVs: sRGB-encoded RGB and linear alpha, in [0, 1].
 
     `image` holds the pixels of the material's base-colour map, None when it has none. The factor
@@ -139,10 +145,10 @@ def base_color(material: Material, image: Image | None, uv: Coordinates) -> Imag
 def base_colors(
     materials: Sequence[Material],
     textures: Sequence[Texture],
-    owners: NDArray[np.integer],
-    has_uv: NDArray[np.bool_],
-    uv: Coordinates,
-) -> Image:
+    owners: IntArray,
+    has_uv: BoolArray,
+    uv: FloatArray,
+) -> Float32Array:
     """Base colours (n, 4) at (n, 2) UVs of the materials `owners` (n,), as `base_color`.
 
     Where `has_uv` (n,) is False the material shows its factor alone.
@@ -158,35 +164,35 @@ def base_colors(
     return colors
 
 
-def srgb_to_linear(values: Image) -> Image:
+def srgb_to_linear(values: Float32Array) -> Float32Array:
     """IEC 61966-2-1 decoding, elementwise, of values in [0, 1]."""
     curved = ((values + 0.055) / 1.055) ** 2.4
     return np.where(values <= 0.04045, values / 12.92, curved).astype(np.float32)
 
 
-def linear_to_srgb(values: Image) -> Image:
+def linear_to_srgb(values: Float32Array) -> Float32Array:
     """IEC 61966-2-1 encoding, elementwise, of values in [0, 1]."""
     curved = 1.055 * np.maximum(values, 0.0031308) ** (1 / 2.4) - 0.055
     return np.where(values <= 0.0031308, values * 12.92, curved).astype(np.float32)
 
 
-def _to_rgba(image: PIL.Image.Image) -> Image:
+def _to_rgba(image: PIL.Image.Image) -> Float32Array:
     if image.mode.startswith("I"):  # Pillow clips 16-bit grey to 255 when converting
         grey = np.asarray(image, dtype=np.float32)[..., None] / np.float32(65535)
         return np.concatenate([grey, grey, grey, np.ones_like(grey)], axis=2)
     return np.asarray(image.convert("RGBA"), dtype=np.float32) / np.float32(255)
 
 
-def _encoded(linear: Image) -> Image:
+def _encoded(linear: Float32Array) -> Float32Array:
     clipped = np.clip(linear, 0.0, 1.0)
     return np.concatenate([linear_to_srgb(clipped[:, :3]), clipped[:, 3:]], axis=1)
 
 
-def _mix(first: Image, second: Image, share: Image) -> Image:
+def _mix(first: Float32Array, second: Float32Array, share: Float32Array) -> Float32Array:
     return first + (second - first) * share
 
 
-def _texel(index: NDArray[np.float64], size: int, wrap: str) -> NDArray[np.intp]:
+def _texel(index: Float64Array, size: int, wrap: str) -> IndexArray:
     # Wrapped as floats: a UV far outside [0, 1] would overflow an integer.
     if wrap == "repeat":
         index = np.remainder(index, size)

@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 from scipy.spatial import KDTree
 
-from nispcodec.core.asset import FloatArray, TexturedMesh
+from nispcodec.core.arrays import Float64Array
+from nispcodec.core.asset import TexturedMesh
 from nispcodec.core.document import ChartTable
 from nispcodec.core.texture import base_colors
 from nispcodec.dataset.sample_set import SampleSet
@@ -14,7 +15,7 @@ NEIGHBOURS = 16
 """Samples that are looked at round each: those that a network may take it for."""
 
 
-def confusion(mesh: TexturedMesh, table: ChartTable, samples: SampleSet) -> FloatArray:
+def confusion(mesh: TexturedMesh, table: ChartTable, samples: SampleSet) -> Float64Array:
     """(n,) how far the colours of neighbours on other charts are off, 0 for those on its own.
 
     The mean over the neighbours of root mean square differences of colour and alpha.

@@ -7,16 +7,17 @@ each off by less than the part is thick. What it costs the surface is the distan
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
-Floats = NDArray[np.float32]
+from nispcodec.core.arrays import Float32Array
 
 REACH = 0.075
 """The nearest sample on the right side is sought no further away than this (normalised frame)."""
 
 
-def reaches(points: Floats, sdf: Floats, field: Floats, strays: bool = False) -> Floats:
+def reaches(
+    points: Float32Array, sdf: Float32Array, field: Float32Array, strays: bool = False
+) -> Float32Array:
     """How far every mistake reaches: 0 where `field` has the sign of `sdf`.
 
     points (n, 3), sdf (n,), field (n,) -> (n,): from a sample on the wrong side to the nearest one
@@ -34,7 +35,7 @@ def reaches(points: Floats, sdf: Floats, field: Floats, strays: bool = False) ->
     return found
 
 
-def _to_nearest(known: Floats, points: Floats) -> Floats:
+def _to_nearest(known: Float32Array, points: Float32Array) -> Float32Array:
     """Distances of points to the nearest known one, `REACH` if there is none so near."""
     if not len(known) or not len(points):
         return np.full(len(points), REACH, dtype=np.float32)

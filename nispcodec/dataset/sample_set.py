@@ -5,11 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from nispcodec.core.asset import IndexArray
-
-Floats = NDArray[np.float32]
+from nispcodec.core.arrays import BoolArray, Float32Array, Int32Array, IntArray
 
 
 @dataclass(frozen=True)
@@ -20,10 +17,10 @@ class SampleSet:
     charts without UV.
     """
 
-    points: Floats
-    sdf: Floats
-    chart: IndexArray
-    uv: Floats
+    points: Float32Array
+    sdf: Float32Array
+    chart: Int32Array
+    uv: Float32Array
 
     @staticmethod
     def joined(parts: tuple[SampleSet, ...]) -> SampleSet:
@@ -38,5 +35,5 @@ class SampleSet:
     def __len__(self) -> int:
         return len(self.points)
 
-    def __getitem__(self, chosen: NDArray[np.bool_] | NDArray[np.integer] | slice) -> SampleSet:
+    def __getitem__(self, chosen: BoolArray | IntArray | slice) -> SampleSet:
         return SampleSet(self.points[chosen], self.sdf[chosen], self.chart[chosen], self.uv[chosen])

@@ -6,12 +6,12 @@ from dataclasses import replace
 from functools import partial
 
 import numpy as np
-from numpy.typing import NDArray
 
-from nispcodec.core.asset import FloatArray, TexturedMesh
+from nispcodec.core.arrays import Float32Array, Float64Array, Int64Array
+from nispcodec.core.asset import TexturedMesh
 from nispcodec.core.document import ChartTable, Frame
 from nispcodec.dataset.chart_error_weight import confusion
-from nispcodec.dataset.sample_set import Floats, SampleSet
+from nispcodec.dataset.sample_set import SampleSet
 from nispcodec.dataset.texture_gradient import detail
 from nispcodec.geometry.chart_cuts import split_self_seams
 from nispcodec.geometry.chart_merging import Cover, merge_charts
@@ -151,12 +151,12 @@ class Sampler:
         """`count` samples again, the more a wrong chart is seen there; 0 where it never is."""
         return self._again(samples, confusion(self._mesh, self.table, samples), count)
 
-    def _again(self, samples: SampleSet, wanted: FloatArray, count: int) -> SampleSet:
+    def _again(self, samples: SampleSet, wanted: Float64Array, count: int) -> SampleSet:
         if not wanted.any():
             return samples[:0]
         return samples[self._random.choice(len(samples), count, p=wanted / wanted.sum())]
 
-    def label(self, points: FloatArray, signed: bool = True) -> SampleSet:
+    def label(self, points: Float64Array, signed: bool = True) -> SampleSet:
         """Distance, chart and UV at each point's closest surface point (paper, eq. 2)."""
         closest = self.field.closest(points, signed)
         face = self.solid.parents[closest.piece]
@@ -178,17 +178,17 @@ class Sampler:
                 openings=True,
             )
 
-    def _beside(self, surface: FloatArray, spread: float) -> FloatArray:
+    def _beside(self, surface: Float64Array, spread: float) -> Float64Array:
         direction = self._random.normal(size=surface.shape)
         direction /= np.linalg.norm(direction, axis=1, keepdims=True)
         points = surface + direction * self._random.gamma(2.0, spread, size=(len(surface), 1))
         return points[np.abs(points).max(axis=1) <= CUBE]
 
-    def _surface(self, count: int) -> tuple[FloatArray, NDArray[np.int64]]:
+    def _surface(self, count: int) -> tuple[Float64Array, Int64Array]:
         points, piece = uniform_surface(self._random, self.solid.pieces, count)
         return self._raised(points, piece), piece
 
-    def _raised(self, points: FloatArray, piece: NDArray[np.int64]) -> FloatArray:
+    def _raised(self, points: Float64Array, piece: Int64Array) -> Float64Array:
         """Points (n, 3) on pieces (n,), those on sheets moved to where the thickness ends.
 
         In front of one of two faces back to back; of a single one on either side.
@@ -212,7 +212,7 @@ class Sampler:
         alike = twins(partial(self.label, signed=False), surface, self.mirrors.uv)
         return merge_charts(self.charts, cover, alike, gap)
 
-    def _network_uv(self, closest: Closest, face: NDArray[np.int64]) -> Floats:
+    def _network_uv(self, closest: Closest, face: Int64Array) -> Float32Array:
         weights = barycentric(self._corners[face], closest.point)
         uv = np.einsum("nc,ncx->nx", weights, self._uvs[face])
         scaled = (uv - np.asarray(self.table.uv_offset)) / np.asarray(self.table.uv_scale)

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from nispcodec.core.asset import FloatArray, Material, TexturedMesh
+from nispcodec.core.arrays import Float32Array, Float64Array
+from nispcodec.core.asset import Material, TexturedMesh
 from nispcodec.core.document import ChartTable
-from nispcodec.core.texture import Image, base_color, decode_image
+from nispcodec.core.texture import base_color, decode_image
 from nispcodec.dataset.sample_set import SampleSet
 
 NEARBY = 2e-3
@@ -15,7 +16,7 @@ NEARBY = 2e-3
 WAYS = NEARBY * np.array([(1, 0), (0, 1), (-1, 0), (0, -1)])
 
 
-def detail(mesh: TexturedMesh, table: ChartTable, samples: SampleSet) -> FloatArray:
+def detail(mesh: TexturedMesh, table: ChartTable, samples: SampleSet) -> Float64Array:
     """(n,) root mean square change of colour and alpha `NEARBY`; 0 where there is no texture."""
     uvs = samples.uv * np.asarray(table.uv_scale) + np.asarray(table.uv_offset)
     owners = np.where(table.has_uv, table.materials, -1)[samples.chart]
@@ -27,7 +28,7 @@ def detail(mesh: TexturedMesh, table: ChartTable, samples: SampleSet) -> FloatAr
     return found
 
 
-def _change(material: Material, image: Image, uvs: FloatArray) -> FloatArray:
+def _change(material: Material, image: Float32Array, uvs: Float64Array) -> Float64Array:
     here = base_color(material, image, uvs)
     squares = [((base_color(material, image, uvs + way) - here) ** 2).mean(axis=1) for way in WAYS]
     return np.sqrt(np.mean(squares, axis=0)).astype(np.float64)

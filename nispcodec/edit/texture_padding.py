@@ -9,7 +9,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from nispcodec.core.asset import FloatArray, Texture, TexturedMesh
+from nispcodec.core.arrays import Float64Array
+from nispcodec.core.asset import Texture, TexturedMesh
 from nispcodec.core.raster import coverage, padded
 from nispcodec.core.texture import encode_image, image_bytes
 
@@ -35,7 +36,7 @@ def _padded(mesh: TexturedMesh, number: int, quality: int) -> Texture:
     return replace(texture, data=encode_image(image, texture.mime.split("/")[1], quality))
 
 
-def _uvs(mesh: TexturedMesh, number: int) -> FloatArray:
+def _uvs(mesh: TexturedMesh, number: int) -> Float64Array:
     """(f, 3, 2): UVs of the faces that show the image, where it repeats in its first repetition."""
     uses = [[m for m in each.maps.values() if m.texture == number] for each in mesh.materials]
     shown = np.array([bool(each) for each in uses], np.bool_)

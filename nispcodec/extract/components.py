@@ -12,11 +12,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import KDTree
 
+from nispcodec.core.arrays import BoolArray, Float32Array, Float64Array, Int32Array, Int64Array
 from nispcodec.core.network import Network
 from nispcodec.extract.grid import LIMIT
 from nispcodec.extract.isosurface import OUTSIDE, Surface
@@ -34,8 +34,6 @@ CRUMB = 8
 MANY = 200_000
 HOLLOW_SHARE = 0.03
 SOME = 20_000
-
-Integers = NDArray[np.int32]
 
 
 @dataclass(frozen=True)
@@ -73,7 +71,7 @@ def without_noise(
     return cleaned, report
 
 
-def components(surface: Surface) -> tuple[int, Integers]:
+def components(surface: Surface) -> tuple[int, Int32Array]:
     """How many connected components, and the component of each vertex (n,)."""
     a, b = surface.faces[:, :2].T, surface.faces[:, 1:].T
     rows, columns = np.concatenate([a[0], a[1]]), np.concatenate([b[0], b[1]])
@@ -83,7 +81,7 @@ def components(surface: Surface) -> tuple[int, Integers]:
     return count, labels.astype(np.int32)
 
 
-def spurious(network: Network, surface: Surface) -> tuple[NDArray[np.bool_], Integers]:
+def spurious(network: Network, surface: Surface) -> tuple[BoolArray, Int32Array]:
     """Which components are noise (c,) bool, and the component of each vertex (n,).
 
     A component is noise when all of it lies outside the unit ball, when it is small and the field
@@ -101,16 +99,16 @@ def spurious(network: Network, surface: Surface) -> tuple[NDArray[np.bool_], Int
     return (nearest > OUTSIDE) | (slope > STEEP) | flat | hollow, labels
 
 
-def _crumbs(network: Network, surface: Surface, labels: Integers, count: int) -> NDArray[np.bool_]:
+def _crumbs(network: Network, surface: Surface, labels: Int32Array, count: int) -> BoolArray:
     """Which of several components (c,) bool are flat and of a single cell."""
     vertices = np.bincount(labels, minlength=count)
-    crumbs: NDArray[np.bool_] = (vertices <= CRUMB) & (count > 1)
+    crumbs: BoolArray = (vertices <= CRUMB) & (count > 1)
     if crumbs.any():
         crumbs &= _mean_slopes(network, surface, labels, vertices) < FLAT
     return crumbs
 
 
-def _lonely(surface: Surface, labels: Integers, specks: NDArray[np.bool_]) -> NDArray[np.bool_]:
+def _lonely(surface: Surface, labels: Int32Array, specks: BoolArray) -> BoolArray:
     """Of some components (c,) bool those with no other component within `LONELY`."""
     apart = specks[labels]
     members, points = labels[apart], surface.positions[apart]
@@ -128,7 +126,7 @@ def _lonely(surface: Surface, labels: Integers, specks: NDArray[np.bool_]) -> ND
     return lonely
 
 
-def _volumes(surface: Surface, labels: Integers, small: NDArray[np.bool_]) -> NDArray[np.float64]:
+def _volumes(surface: Surface, labels: Int32Array, small: BoolArray) -> Float64Array:
     """What each small closed component encloses; below 0 when its outside is within (Gauss)."""
     faces = surface.faces[small[labels[surface.faces[:, 0]]]]
     a, b, c = np.moveaxis(surface.positions[faces].astype(np.float64), 1, 0)
@@ -137,8 +135,8 @@ def _volumes(surface: Surface, labels: Integers, small: NDArray[np.bool_]) -> ND
 
 
 def _mean_slopes(
-    network: Network, surface: Surface, labels: Integers, vertices: NDArray[np.int64]
-) -> NDArray[np.float64]:
+    network: Network, surface: Surface, labels: Int32Array, vertices: Int64Array
+) -> Float64Array:
     """Mean slope of the field on each small component, relative to the whole; 1 on large ones."""
     small = vertices < SMALL_SHARE * len(labels)
     chosen = np.flatnonzero(small[labels])
@@ -148,14 +146,12 @@ def _mean_slopes(
     return np.where(small, totals / vertices / whole, 1.0)
 
 
-def _slopes(network: Network, surface: Surface, chosen: NDArray[np.int64]) -> NDArray[np.float32]:
-    slopes: NDArray[np.float32] = np.linalg.norm(
-        gradient(network, surface.positions[chosen])[1], axis=1
-    )
+def _slopes(network: Network, surface: Surface, chosen: Int64Array) -> Float32Array:
+    slopes: Float32Array = np.linalg.norm(gradient(network, surface.positions[chosen])[1], axis=1)
     return slopes
 
 
-def without(surface: Surface, unwanted: NDArray[np.bool_], labels: Integers) -> Surface:
+def without(surface: Surface, unwanted: BoolArray, labels: Int32Array) -> Surface:
     """The surface without the components marked in `unwanted` (c,) bool."""
     if not unwanted.any():
         return surface

@@ -8,8 +8,8 @@ or the surface would crack.
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from nispcodec.core.arrays import BoolArray, Float32Array, Int32Array, Int64Array
 from nispcodec.core.network import Network
 from nispcodec.extract.marching_cubes import CORNERS
 from nispcodec.infer.evaluate import evaluate
@@ -23,10 +23,6 @@ TOGETHER = 1 << 15
 # The points that a block owns: their numbers, and their places by number.
 OWN_POINTS = np.arange(BLOCK**3, dtype=np.int32).reshape((BLOCK,) * 3)
 OWN = np.indices(OWN_POINTS.shape).reshape(3, -1).T
-
-Ids = NDArray[np.int64]
-Floats = NDArray[np.float32]
-Numbers = NDArray[np.int32]
 
 
 def together(count: int) -> list[slice]:
@@ -44,7 +40,7 @@ class Grid:
         self._field = np.empty((0, *(BLOCK,) * 3), np.float32)
         self._known = np.empty(self._field.shape, np.bool_)
 
-    def sampled(self, blocks: Ids) -> tuple[Floats, Numbers]:
+    def sampled(self, blocks: Int64Array) -> tuple[Float32Array, Int32Array]:
         """The field at blocks' (BLOCK + 1)^3 grid points, and their numbers: (b, 3, 3, 3) each.
 
         blocks (b, 3): integer coordinates, each block once.
@@ -64,7 +60,7 @@ class Grid:
         on_every_core(take, together(len(blocks)))
         return values, points
 
-    def has_sampled(self, blocks: Ids) -> NDArray[np.bool_]:
+    def has_sampled(self, blocks: Int64Array) -> BoolArray:
         """Which blocks (n, 3) were already given to `sampled`."""
         number = self._numbering.find(blocks)
         # A block's last point is no other's.
@@ -72,7 +68,7 @@ class Grid:
         sampled[sampled] = self._known[number[sampled], -1, -1, -1]
         return sampled
 
-    def _evaluate(self, owners: list[Numbers]) -> None:
+    def _evaluate(self, owners: list[Int32Array]) -> None:
         """Asks the network at those points of the owners that no block has asked for before."""
         more = (len(self._numbering.blocks) - len(self._field), *(BLOCK,) * 3)
         self._field = np.concatenate([self._field, np.empty(more, np.float32)])
@@ -93,7 +89,7 @@ class Grid:
         on_every_core(ask, together(len(asked)))
 
 
-def _taken(corner: Ids) -> tuple[slice, ...]:
+def _taken(corner: Int64Array) -> tuple[slice, ...]:
     """Of the points that the neighbour at `corner` owns, those that its lower neighbour takes."""
     return tuple(slice(1) if c else slice(None) for c in corner)
 
@@ -110,7 +106,7 @@ class _Numbering:
         self._octets = np.zeros((across // 2 + 1,) * 3, np.int32)
         self._members = np.full((1, 2, 2, 2), -1, np.int32)
 
-    def __call__(self, wanted: Ids) -> Numbers:
+    def __call__(self, wanted: Int64Array) -> Int32Array:
         """The numbers (n,) of blocks (n, 3), each there once; those not met before get the next."""
         self._add_octets(wanted >> 1)
         numbers = self.find(wanted)
@@ -120,7 +116,7 @@ class _Numbering:
         self.blocks = np.concatenate([self.blocks, wanted[new]])
         return numbers
 
-    def find(self, wanted: Ids) -> Numbers:
+    def find(self, wanted: Int64Array) -> Int32Array:
         """The numbers (n,) of blocks (n, 3), -1 for those not met."""
         numbers = np.empty(len(wanted), np.int32)
 
@@ -131,7 +127,7 @@ class _Numbering:
         on_every_core(look_up, together(len(wanted)))
         return numbers
 
-    def _add_octets(self, wanted: Ids) -> None:
+    def _add_octets(self, wanted: Int64Array) -> None:
         absent = wanted[self._octets[*wanted.T] == 0]
         # Of those there more than once, the one whose number stays.
         order = np.arange(len(absent))

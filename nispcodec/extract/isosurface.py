@@ -10,10 +10,18 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from nispcodec.core.arrays import (
+    BoolArray,
+    Float32Array,
+    Int8Array,
+    Int32Array,
+    Int64Array,
+    Uint8Array,
+    Uint32Array,
+)
 from nispcodec.core.network import Network
-from nispcodec.extract.grid import BLOCK, LIMIT, Floats, Grid, Ids, Numbers, together
+from nispcodec.extract.grid import BLOCK, LIMIT, Grid, together
 from nispcodec.extract.marching_cubes import CORNERS, EDGES, polygonise
 from nispcodec.extract.newton import onto_surface
 from nispcodec.infer.evaluate import evaluate, gradient
@@ -37,8 +45,8 @@ AXES = np.array([axis for _, axis in EDGES], np.int8)
 class Surface:
     """positions (n, 3) float32, normalised frame; faces (m, 3) int32; cell: the grid's spacing."""
 
-    positions: Floats
-    faces: Numbers
+    positions: Float32Array
+    faces: Int32Array
     cell: float
 
 
@@ -56,7 +64,7 @@ def extract(network: Network, resolution: int) -> Surface:
     return Surface(onto_surface(network, crossings, cell / 2, NEWTON_STEPS), faces, cell)
 
 
-def near_surface(network: Network, resolution: int) -> tuple[Floats, float]:
+def near_surface(network: Network, resolution: int) -> tuple[Float32Array, float]:
     """Centres (b, 3) of the blocks that `extract` would look into, and the blocks' size."""
     root, levels, cell = _grid(resolution)
     blocks = _surface_blocks(network, root, levels, cell)
@@ -71,7 +79,7 @@ def _grid(resolution: int) -> tuple[int, int, float]:
     return root, levels, 2 * LIMIT / (root * 2**levels * BLOCK)
 
 
-def _surface_blocks(network: Network, root: int, levels: int, cell: float) -> Ids:
+def _surface_blocks(network: Network, root: int, levels: int, cell: float) -> Int64Array:
     """Integer coordinates (b, 3) of the blocks of BLOCK^3 cells that may hold surface.
 
     A block is halved and kept while the field at its centre is no larger than it may become over
@@ -95,22 +103,22 @@ def _surface_blocks(network: Network, root: int, levels: int, cell: float) -> Id
     return blocks
 
 
-def _centres(blocks: Ids, size: float) -> Floats:
+def _centres(blocks: Int64Array, size: float) -> Float32Array:
     return ((blocks + 0.5) * size - LIMIT).astype(np.float32)
 
 
-def _lattice(count: int) -> Ids:
+def _lattice(count: int) -> Int64Array:
     """All integer points of a cube, (count^3, 3), the last axis fastest."""
     return np.indices((count,) * 3).reshape(3, -1).T.astype(np.int64)
 
 
-def _steepness(network: Network, points: Floats) -> float:
+def _steepness(network: Network, points: Float32Array) -> float:
     """How steep the field is round most points: 1 for an SDF, for a fitted one only nearly."""
     slopes = np.linalg.norm(gradient(network, points)[1], axis=1)
     return float(np.percentile(slopes, 99, method="higher")) if len(slopes) else 1.0
 
 
-def _sampled(grid: Grid, blocks: Ids) -> tuple[Ids, Floats, Numbers]:
+def _sampled(grid: Grid, blocks: Int64Array) -> tuple[Int64Array, Float32Array, Int32Array]:
     """The blocks and all that the surface goes on into; what `Grid.sampled` says of them.
 
     Where it left them it would end in a hole.
@@ -122,7 +130,7 @@ def _sampled(grid: Grid, blocks: Ids) -> tuple[Ids, Floats, Numbers]:
     return blocks, values, points
 
 
-def _behind(grid: Grid, blocks: Ids, values: Floats) -> Ids:
+def _behind(grid: Grid, blocks: Int64Array, values: Float32Array) -> Int64Array:
     """Blocks (b, 3) of the cube that were not sampled, and lie behind a face that is crossed."""
     inside = np.empty(len(values), np.uint32)
 
@@ -145,12 +153,12 @@ def _behind(grid: Grid, blocks: Ids, values: Floats) -> Ids:
     return np.stack(np.unravel_index(missing, cube), axis=1)
 
 
-def _bits(flags: NDArray[np.bool_]) -> NDArray[np.uint32]:
+def _bits(flags: BoolArray) -> Uint32Array:
     """The (BLOCK + 1)^3 flags of each block (..., 27) as one number."""
     return np.packbits(flags, axis=-1).view(">u4")[..., 0]
 
 
-def _polygons(values: Floats, points: Numbers) -> tuple[Ids, NDArray[np.int8], Numbers]:
+def _polygons(values: Float32Array, points: Int32Array) -> tuple[Int64Array, Int8Array, Int32Array]:
     """The crossed grid edges: where their low ends are in `values` (n,), their axes; faces (m, 3).
 
     An edge is known by the number of its low point, so that no sorting is needed to find the same
@@ -179,7 +187,7 @@ def _polygons(values: Floats, points: Numbers) -> tuple[Ids, NDArray[np.int8], N
     return lowest.astype(np.int64), (crossed % 3).astype(np.int8), np.concatenate(edges)
 
 
-def _triangles(values: Floats) -> tuple[Ids, NDArray[np.int8]]:
+def _triangles(values: Float32Array) -> tuple[Int64Array, Int8Array]:
     """Triangles' edges (t, 3): where their low ends are in the values of all blocks, their axes."""
     cases = _cases(values)
     cells = np.flatnonzero((cases > 0) & (cases < 255))
@@ -187,7 +195,7 @@ def _triangles(values: Floats) -> tuple[Ids, NDArray[np.int8]]:
     return _first_corners(cells)[owners, None] + LOW_ENDS[edges], AXES[edges]
 
 
-def _cases(values: Floats) -> NDArray[np.uint8]:
+def _cases(values: Float32Array) -> Uint8Array:
     """The case of every cell of every block, (b * BLOCK^3,)."""
     inside = values < 0
     cases = np.zeros((len(values), *(BLOCK,) * 3), np.uint8)
@@ -197,15 +205,15 @@ def _cases(values: Floats) -> NDArray[np.uint8]:
     return cases.ravel()
 
 
-def _first_corners(cells: Ids) -> Ids:
+def _first_corners(cells: Int64Array) -> Int64Array:
     """Where cells' lowest corners are in the values of all blocks."""
     block, inner = np.divmod(cells, BLOCK**3)
     return block * (BLOCK + 1) ** 3 + (_lattice(BLOCK) @ STRIDES)[inner]
 
 
 def _crossings(
-    blocks: Ids, values: Floats, places: Ids, axes: NDArray[np.int8], cell: float
-) -> Floats:
+    blocks: Int64Array, values: Float32Array, places: Int64Array, axes: Int8Array, cell: float
+) -> Float32Array:
     """Where the field crosses zero along each edge, if it were linear."""
     lattice = _lattice(BLOCK + 1)
     found = np.empty((len(places), 3), np.float32)

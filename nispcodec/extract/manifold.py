@@ -7,19 +7,16 @@ Such an edge becomes two, each with the two faces that bound the same solid part
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
+from nispcodec.core.arrays import BoolArray, Float64Array, Int32Array, Int64Array
 from nispcodec.extract.isosurface import Surface
 
 # How far the copies of a vertex draw back to their own faces, as a share of these faces' size.
 RETREAT = 1e-3
 
-Faces = NDArray[np.int32]
-Indices = NDArray[np.int64]
-Sheets = NDArray[np.int32]
-Twins = tuple[Indices, Indices]
+Twins = tuple[Int64Array, Int64Array]
 
 
 def manifold(surface: Surface) -> Surface:
@@ -46,7 +43,7 @@ def _apart(surface: Surface, twins: Twins) -> Surface:
     return Surface(drawn.astype(np.float32), faces, surface.cell)
 
 
-def _sheets(twins: Twins) -> Sheets:
+def _sheets(twins: Twins) -> Int32Array:
     """The sheet of each corner (3m,): corners of one vertex that are joined across edges."""
     one, other = twins
     count = 2 * len(one)
@@ -54,11 +51,11 @@ def _sheets(twins: Twins) -> Sheets:
     after = np.arange(count).reshape(-1, 3)[:, [1, 2, 0]].ravel()
     rows, columns = np.concatenate([one, after[one]]), np.concatenate([after[other], other])
     graph = coo_array((np.ones(len(rows), np.bool_), (rows, columns)), shape=(count, count))
-    sheets: Sheets = connected_components(graph, directed=False)[1]
+    sheets: Int32Array = connected_components(graph, directed=False)[1]
     return sheets
 
 
-def _doubled(faces: Faces, twins: Twins) -> Indices:
+def _doubled(faces: Int32Array, twins: Twins) -> Int64Array:
     """Twins (t, 2), half-edges, that run between the same two vertices as others."""
     starts, ends = faces.ravel().astype(np.int64), np.roll(faces, -1, axis=1).ravel()
     keys = starts << 32 | ends
@@ -66,7 +63,7 @@ def _doubled(faces: Faces, twins: Twins) -> Indices:
     return np.stack(twins, axis=1)[counts[edge] > 1]
 
 
-def _halved(surface: Surface, twins: Indices) -> Surface:
+def _halved(surface: Surface, twins: Int64Array) -> Surface:
     """The surface with a new vertex in the middle of each pair of half-edges (t, 2)."""
     first = len(surface.positions)
     middles = {half: first + row for row, pair in enumerate(twins.tolist()) for half in pair}
@@ -80,7 +77,7 @@ def _halved(surface: Surface, twins: Indices) -> Surface:
     return Surface(np.vstack([surface.positions, new]), faces, surface.cell)
 
 
-def _fan(faces: Faces, face: int, middles: dict[int, int]) -> list[list[int]]:
+def _fan(faces: Int32Array, face: int, middles: dict[int, int]) -> list[list[int]]:
     """The triangles of a face with new vertices on some sides, round one of these."""
     loop = []
     for side in range(3):
@@ -107,7 +104,7 @@ def _twins(surface: Surface) -> Twins:
     return up, joined
 
 
-def _turns(surface: Surface, keys: Indices, down: NDArray[np.bool_]) -> NDArray[np.float64]:
+def _turns(surface: Surface, keys: Int64Array, down: BoolArray) -> Float64Array:
     """How far (3m,) each half-edge's face is turned round its edge from the edge's first face.
 
     Radians in [0, 2 pi), through the solid first; 0 where an edge has but two faces.

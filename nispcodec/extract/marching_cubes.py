@@ -10,7 +10,8 @@ from __future__ import annotations
 from functools import cache
 
 import numpy as np
-from numpy.typing import NDArray
+
+from nispcodec.core.arrays import Int8Array, Int64Array, Uint8Array
 
 # Corner i of a cell lies at the bits of i: x = i & 1, y = i >> 1 & 1, z = i >> 2.
 CORNERS = np.array([(i & 1, i >> 1 & 1, i >> 2) for i in range(8)])
@@ -19,7 +20,7 @@ EDGES = [(low, axis) for axis in range(3) for low in range(8) if not low >> axis
 
 
 @cache
-def triangle_table() -> tuple[NDArray[np.int8], NDArray[np.int64]]:
+def triangle_table() -> tuple[Int8Array, Int64Array]:
     """Triangles of all 256 cases, case after case, and where each case starts.
 
     -> triangles (t, 3) int8 edge numbers into EDGES, wound counter-clockwise seen from outside
@@ -33,7 +34,7 @@ def triangle_table() -> tuple[NDArray[np.int8], NDArray[np.int64]]:
     return np.array(triangles, np.int8), np.array(starts)
 
 
-def polygonise(cases: NDArray[np.uint8]) -> tuple[NDArray[np.int64], NDArray[np.int8]]:
+def polygonise(cases: Uint8Array) -> tuple[Int64Array, Int8Array]:
     """Triangles of many cells: cases (n,) -> cell of each triangle (t,), its edges (t, 3)."""
     table, starts = triangle_table()
     counts = (starts[1:] - starts[:-1])[cases]

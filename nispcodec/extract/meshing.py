@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
-from nispcodec.core.asset import IndexArray, TexturedMesh
+from nispcodec.core.arrays import Int32Array
+from nispcodec.core.asset import TexturedMesh
 from nispcodec.core.document import Document
 from nispcodec.core.network import Network
 from nispcodec.extract.components import (
@@ -32,8 +32,6 @@ FACES = 500_000
 FACES_A_BLOCK = 6.6
 MAX_RESOLUTION = 2048
 FITTINGS = 4
-
-Floats = NDArray[np.float32]
 
 
 def textured_mesh(
@@ -81,7 +79,7 @@ def _surface(
         cells *= 2
 
 
-def _cut(document: Document, surface: Surface) -> tuple[Surface, IndexArray]:
+def _cut(document: Document, surface: Surface) -> tuple[Surface, Int32Array]:
     """The surface with one chart a face, and those charts (m,)."""
     if document.chart is None:
         return surface, np.zeros(len(surface.faces), np.int32)
@@ -89,7 +87,7 @@ def _cut(document: Document, surface: Surface) -> tuple[Surface, IndexArray]:
     return cut_along_seams(document.sdf, document.chart, surface, charts)
 
 
-def _fitted(document: Document, surface: Surface, faces: int) -> tuple[Surface, IndexArray]:
+def _fitted(document: Document, surface: Surface, faces: int) -> tuple[Surface, Int32Array]:
     """The surface simplified until it has at most `faces` triangles after being cut."""
     target = faces
     for _ in range(FITTINGS):
@@ -100,7 +98,7 @@ def _fitted(document: Document, surface: Surface, faces: int) -> tuple[Surface, 
     return cut, charts
 
 
-def _opened(document: Document, surface: Surface, charts: IndexArray) -> tuple[Surface, IndexArray]:
+def _opened(document: Document, surface: Surface, charts: Int32Array) -> tuple[Surface, Int32Array]:
     """Without the membranes that the field draws across the asset's openings.
 
     Islands in them, tiny pieces of another chart, go as well: the chart network was wrong there.
@@ -119,7 +117,7 @@ def _opened(document: Document, surface: Surface, charts: IndexArray) -> tuple[S
     return without(opened, islands, labels), charts[kept][left]
 
 
-def _dressed(document: Document, surface: Surface, charts: IndexArray) -> TexturedMesh:
+def _dressed(document: Document, surface: Surface, charts: Int32Array) -> TexturedMesh:
     """The surface with UVs, doubled at seams: one UV for each vertex and chart that meet."""
     table = document.charts
     corners = np.repeat(charts[:, None], 3, axis=1)

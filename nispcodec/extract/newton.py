@@ -3,17 +3,15 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from nispcodec.core.arrays import Float32Array
 from nispcodec.core.network import Network
 from nispcodec.extract.grid import together
 from nispcodec.infer.evaluate import evaluate, gradient
 from nispcodec.infer.parallel import on_every_core
 
-Floats = NDArray[np.float32]
 
-
-def onto_surface(network: Network, points: Floats, reach: float, steps: int) -> Floats:
+def onto_surface(network: Network, points: Float32Array, reach: float, steps: int) -> Float32Array:
     """Points (n, 3) float32, normalised frame, after Newton steps along the field's gradient.
 
     The gradient is taken once, at the start: the points are near the surface already. A step is
@@ -29,7 +27,7 @@ def onto_surface(network: Network, points: Floats, reach: float, steps: int) -> 
     return result
 
 
-def _moved(network: Network, points: Floats, reach: float, steps: int) -> Floats:
+def _moved(network: Network, points: Float32Array, reach: float, steps: int) -> Float32Array:
     values, slopes = gradient(network, points)
     steepness = (slopes * slopes).sum(axis=1, keepdims=True)
     direction = slopes / np.maximum(steepness, np.float32(1e-6))

@@ -7,8 +7,8 @@ both triangles at the edge use it, so the cut leaves no crack and no T-junction.
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from nispcodec.core.arrays import BoolArray, Float32Array, Int32Array, Int64Array
 from nispcodec.core.network import Network
 from nispcodec.extract.isosurface import Surface
 from nispcodec.extract.newton import onto_surface
@@ -18,14 +18,10 @@ BISECTIONS = 8
 # Cuts stay this far from an edge's ends (share of its length): no needles, no empty triangles.
 CLEARANCE = 0.02
 
-Charts = NDArray[np.int32]
-Faces = NDArray[np.int32]
-Floats = NDArray[np.float32]
-
 
 def cut_along_seams(
-    sdf: Network, chart: Network, surface: Surface, charts: Charts
-) -> tuple[Surface, Charts]:
+    sdf: Network, chart: Network, surface: Surface, charts: Int32Array
+) -> tuple[Surface, Int32Array]:
     """The surface cut where `charts` (n,), one a vertex, change -> surface, chart of each face."""
     corners = charts[surface.faces]
     crossing = corners != np.roll(corners, -1, axis=1)
@@ -49,8 +45,8 @@ def cut_along_seams(
 
 
 def _crossed_edges(
-    faces: Faces, crossing: NDArray[np.bool_], first: int
-) -> tuple[NDArray[np.int64], Faces]:
+    faces: Int32Array, crossing: BoolArray, first: int
+) -> tuple[Int64Array, Int32Array]:
     """Crossed edges (e, 2) and, for each side of each face, its cut's vertex number or -1."""
     following = np.roll(faces, -1, axis=1)
     low, high = np.minimum(faces, following), np.maximum(faces, following)
@@ -62,8 +58,8 @@ def _crossed_edges(
 
 
 def _borders(
-    network: Network, positions: Floats, edges: NDArray[np.int64], charts: Charts
-) -> Floats:
+    network: Network, positions: Float32Array, edges: Int64Array, charts: Int32Array
+) -> Float32Array:
     """Where the chart changes along each edge: (e, 3), by bisection on the two charts' contrast."""
     start, end = positions[edges[:, 0]], positions[edges[:, 1]]
     first, second = charts[edges[:, 0]], charts[edges[:, 1]]
@@ -79,18 +75,18 @@ def _borders(
         low, high = np.where(before, middle, low), np.where(before, high, middle)
     share = np.where(bracketed, (low + high) / 2, np.float32(0.5))
     share = np.clip(share, CLEARANCE, 1 - CLEARANCE)
-    borders: Floats = start + share[:, None] * (end - start)
+    borders: Float32Array = start + share[:, None] * (end - start)
     return borders
 
 
-def _middles(sdf: Network, positions: Floats, cuts: Faces, cell: float) -> Floats:
+def _middles(sdf: Network, positions: Float32Array, cuts: Int32Array, cell: float) -> Float32Array:
     centres = positions[cuts].mean(axis=1, dtype=np.float32)
     return onto_surface(sdf, centres, cell / 2, steps=1)
 
 
 def _cut_in_two(
-    positions: Floats, faces: Faces, corners: Charts, cuts: Faces
-) -> tuple[Faces, Charts]:
+    positions: Float32Array, faces: Int32Array, corners: Int32Array, cuts: Int32Array
+) -> tuple[Int32Array, Int32Array]:
     """Two corners on one chart: a triangle at the lone corner, a quad at the others."""
     lone = np.argmin(cuts, axis=1) - 1
     order = (lone[:, None] + np.arange(3)) % 3
@@ -109,7 +105,9 @@ def _cut_in_two(
     return np.vstack(triangles), np.concatenate([a, b, b])
 
 
-def _cut_in_three(faces: Faces, corners: Charts, cuts: Faces, first: int) -> tuple[Faces, Charts]:
+def _cut_in_three(
+    faces: Int32Array, corners: Int32Array, cuts: Int32Array, first: int
+) -> tuple[Int32Array, Int32Array]:
     """Three charts: a quad at each corner, all meeting in a new vertex in the middle."""
     middle = first + np.arange(len(faces), dtype=np.int32)
     triangles, charts = [], []

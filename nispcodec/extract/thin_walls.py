@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from nispcodec.core.arrays import Float32Array
 from nispcodec.core.network import Network
 from nispcodec.extract.newton import onto_surface
 from nispcodec.infer.evaluate import evaluate, gradient
@@ -12,10 +12,8 @@ from nispcodec.infer.evaluate import evaluate, gradient
 STEPS = 3
 NEARNESS = 1e-3
 
-Floats = NDArray[np.float32]
 
-
-def thin_share(network: Network, points: Floats, reach: float, depth: float) -> float:
+def thin_share(network: Network, points: Float32Array, reach: float, depth: float) -> float:
     """The share of the surface near `points` (n, 3) behind which there is no `depth` of solid.
 
     The points are moved onto the surface, by at most `reach` along an axis, and from there on by

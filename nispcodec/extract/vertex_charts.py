@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
+from nispcodec.core.arrays import Int32Array, Int64Array
 from nispcodec.core.network import Network
 from nispcodec.extract.isosurface import Surface
 from nispcodec.infer.evaluate import classify
@@ -16,11 +16,8 @@ SPECK_AREA = 1.2e-4
 SPECK_VERTICES = 2
 ROUNDS = 3
 
-Charts = NDArray[np.int32]
-Pairs = NDArray[np.int64]
 
-
-def vertex_charts(network: Network, surface: Surface) -> Charts:
+def vertex_charts(network: Network, surface: Surface) -> Int32Array:
     """The chart of each vertex (n,), specks of wrong chart voted away."""
     charts = classify(network, surface.positions)
     edges = _links(surface.faces)
@@ -32,13 +29,13 @@ def vertex_charts(network: Network, surface: Surface) -> Charts:
     return charts
 
 
-def _links(faces: NDArray[np.int32]) -> Pairs:
+def _links(faces: Int32Array) -> Int64Array:
     """The edges (e, 2) of a closed surface, each once: its two faces run along it both ways."""
     sides = np.stack([faces, np.roll(faces, -1, axis=1)], axis=2).reshape(-1, 2)
     return sides[sides[:, 0] < sides[:, 1]].astype(np.int64)
 
 
-def _without_specks(charts: Charts, edges: Pairs, least: int) -> Charts:
+def _without_specks(charts: Int32Array, edges: Int64Array, least: int) -> Int32Array:
     """Patches of one chart with fewer than `least` vertices take the chart of most neighbours."""
     a, b = edges.T
     same = charts[a] == charts[b]

@@ -6,14 +6,13 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from nispcodec.core.arrays import AnyArray, Float32Array, Int32Array, Int64Array
 from nispcodec.core.errors import FormatError
-from nispcodec.core.initial_weights import Integers, told
-from nispcodec.core.network import Network, NetworkSpec, Weights
+from nispcodec.core.initial_weights import told
+from nispcodec.core.network import Network, NetworkSpec
 from nispcodec.format import steps
 from nispcodec.format.codings import coo, csc, csr, dense, dia, entropy
 from nispcodec.format.codings.reader import Reader, varint
@@ -67,11 +66,11 @@ class Record:
         return bytes([tag]) + step + reaches + self.run.head()
 
     @property
-    def _octaves(self) -> list[Integers]:
+    def _octaves(self) -> list[Int64Array]:
         return [np.minimum(tensor.octaves, (1 << self.width) - 1) for tensor in self.tensors]
 
     @property
-    def _values(self) -> list[NDArray[Any]]:
+    def _values(self) -> list[AnyArray]:
         pairs = zip(self.tensors, self._octaves, strict=True)
         return [tensor.values(octaves, self.coding == "drawn") for tensor, octaves in pairs]
 
@@ -94,10 +93,10 @@ class Part:
 
     names: list[str]
     step: float | None
-    values: NDArray[Any] | None
+    values: AnyArray | None
     head: entropy.Head | None
-    octaves: Integers
-    expected: Integers
+    octaves: Int64Array
+    expected: Int64Array
 
 
 Candidate = tuple[int, int, Record]
@@ -191,7 +190,7 @@ def _read(reader: Reader, left: list[str], spec: NetworkSpec, before: float | No
     return Part(names, step, None, head, octaves, expected)
 
 
-def _octaves(reader: Reader, form: str, shapes: list[tuple[int, int]]) -> list[Integers]:
+def _octaves(reader: Reader, form: str, shapes: list[tuple[int, int]]) -> list[Int64Array]:
     """(rows, columns) those of every weight of some tensors."""
     rows = [shape[0] for shape in shapes]
     found = np.split(steps.decode_octaves(reader, form, sum(rows)), np.cumsum(rows)[:-1])
@@ -199,7 +198,9 @@ def _octaves(reader: Reader, form: str, shapes: list[tuple[int, int]]) -> list[I
     return [np.broadcast_to(octaves[:, None], shape) for octaves, shape in pairs]
 
 
-def _expected(reader: Reader, drawn: dict[str, Integers], octaves: list[Integers]) -> Integers:
+def _expected(
+    reader: Reader, drawn: dict[str, Int64Array], octaves: list[Int64Array]
+) -> Int64Array:
     """What draws tell of the symbols of some tensors."""
     reaches = [reader.varint("reach", MAX_SYMBOL) for _ in drawn]
     every = zip(drawn.values(), reaches, octaves, strict=True)
@@ -212,7 +213,7 @@ def _matrix_shape(shape: tuple[int, ...]) -> tuple[int, int]:
     return (1, shape[0]) if len(shape) == 1 else (shape[0], shape[1])
 
 
-def _symbols(path: str, tensor: Weights, step: float) -> NDArray[np.int32]:
+def _symbols(path: str, tensor: Float32Array, step: float) -> Int32Array:
     single = np.float32(step)
     if not 0 < single < np.inf:
         raise FormatError(NETS, f"{path}.step", "a positive float32", step)

@@ -8,8 +8,8 @@ from __future__ import annotations
 import struct
 
 import numpy as np
-from numpy.typing import NDArray
 
+from nispcodec.core.arrays import Int64Array, IntArray
 from nispcodec.core.errors import FormatError
 from nispcodec.format.codings import bits
 from nispcodec.format.codings.reader import Reader
@@ -26,7 +26,7 @@ def has_octaves(step: float) -> bool:
 
 
 def encode(
-    path: str, step: float, before: float | None, octaves: NDArray[np.integer], width: int
+    path: str, step: float, before: float | None, octaves: IntArray, width: int
 ) -> tuple[str, bytes]:
     """Form and bytes of a step; `before` is that of the record before, if it has one.
 
@@ -49,7 +49,7 @@ def encode(
     return form, struct.pack(_FORMATS[form], single)
 
 
-def decode_octaves(reader: Reader, form: str, rows: int) -> NDArray[np.int64]:
+def decode_octaves(reader: Reader, form: str, rows: int) -> Int64Array:
     """(rows,) the octaves that follow a step; none are 0."""
     if not form.startswith("rows"):
         return np.zeros(rows, np.int64)

@@ -4,12 +4,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from nispcodec.core.initial_weights import BITS, Integers, told
+from nispcodec.core.arrays import AnyArray, Int64Array
+from nispcodec.core.initial_weights import BITS, told
 from nispcodec.core.network import MAX_OCTAVE
 from nispcodec.format.constants import MAX_SYMBOL
 
@@ -24,8 +23,8 @@ class Tensor:
 
     path: str
     step: float | None
-    matrix: NDArray[Any]
-    drawn: Integers
+    matrix: AnyArray
+    drawn: Int64Array
 
     @cached_property
     def reach(self) -> int:
@@ -39,14 +38,14 @@ class Tensor:
         return reach if far <= MAX_SYMBOL else 0
 
     @cached_property
-    def octaves(self) -> Integers:
+    def octaves(self) -> Int64Array:
         """(rows,) the largest powers of two that all symbols of a row are multiples of."""
         if self.step is None:
             return np.zeros(len(self.matrix), np.int64)
         every = np.bitwise_or.reduce(self.matrix, axis=1).astype(np.int64) | 1 << MAX_OCTAVE
         return np.log2(every & -every).astype(np.int64)
 
-    def values(self, octaves: Integers, drawn: bool) -> NDArray[Any]:
+    def values(self, octaves: Int64Array, drawn: bool) -> AnyArray:
         """(rows, columns) weights, or symbols by these octaves, less what draws tell of them."""
         if self.step is None:
             return self.matrix

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from nispcodec.core.arrays import AnyArray, Float32Array
 from nispcodec.core.errors import FormatError
-from nispcodec.core.network import Network, NetworkSpec, Weights
+from nispcodec.core.network import Network, NetworkSpec
 from nispcodec.format import records
 from nispcodec.format.codings import entropy
 from nispcodec.format.codings.reader import Reader
@@ -83,7 +82,7 @@ def _check_count(specs: list[NetworkSpec]) -> None:
 
 
 def _network(
-    reader: Reader, name: str, spec: NetworkSpec, parts: list[Part], values: list[NDArray[Any]]
+    reader: Reader, name: str, spec: NetworkSpec, parts: list[Part], values: list[AnyArray]
 ) -> Network:
     tensors, steps, every = {}, {}, spec.shapes
     for part, flat in zip(parts, values, strict=True):
@@ -96,14 +95,14 @@ def _network(
     return Network(spec, tensors, steps)
 
 
-def _scale(reader: Reader, path: str, values: NDArray[Any], step: float | None) -> Weights:
+def _scale(reader: Reader, path: str, values: AnyArray, step: float | None) -> Float32Array:
     scaled = values if step is None else _multiplied(reader, path, values, step)
     if not np.isfinite(scaled).all():
         raise reader.error(path, "finite weights", "NaN or infinity")
     return np.ascontiguousarray(scaled)
 
 
-def _multiplied(reader: Reader, path: str, symbols: NDArray[Any], step: float) -> Weights:
+def _multiplied(reader: Reader, path: str, symbols: AnyArray, step: float) -> Float32Array:
     largest = max(int(symbols.max()), -int(symbols.min()))
     if largest > MAX_SYMBOL:
         raise reader.error(path, f"symbols up to {MAX_SYMBOL}", largest)

@@ -9,14 +9,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components, dijkstra
 
+from nispcodec.core.arrays import Float64Array, Int64Array, IntArray
 from nispcodec.core.asset import TexturedMesh
 from nispcodec.geometry.charts import Charts, colored, connected_faces, row_ids, uv_ids
-
-Ids = NDArray[np.int64]
 
 
 def split_self_seams(mesh: TexturedMesh, charts: Charts) -> Charts:
@@ -41,11 +39,11 @@ def split_self_seams(mesh: TexturedMesh, charts: Charts) -> Charts:
 class _Seams:
     """Edges inside one chart whose UV jumps: the corners (s, 2) of their ends on either side."""
 
-    one: Ids
-    other: Ids
+    one: Int64Array
+    other: Int64Array
 
 
-def _corners(mesh: TexturedMesh, charts: Charts) -> Ids:
+def _corners(mesh: TexturedMesh, charts: Charts) -> Int64Array:
     """(m, 3): the same number where chart, position and UV are the same."""
     position = row_ids(mesh.positions)[mesh.faces]
     chart = np.repeat(charts.face_charts[:, None], 3, axis=1)
@@ -53,7 +51,7 @@ def _corners(mesh: TexturedMesh, charts: Charts) -> Ids:
     return row_ids(corners.reshape(-1, 3)).reshape(-1, 3)
 
 
-def _seams(mesh: TexturedMesh, corners: Ids) -> _Seams:
+def _seams(mesh: TexturedMesh, corners: Int64Array) -> _Seams:
     """Pair the face sides that join the same two positions within one chart."""
     position = row_ids(mesh.positions)[mesh.faces]
     places = np.stack([position, np.roll(position, -1, axis=1)], axis=2).reshape(-1, 2)
@@ -69,14 +67,14 @@ def _seams(mesh: TexturedMesh, corners: Ids) -> _Seams:
     return _Seams(one[jumps], other[jumps])
 
 
-def _chart_of_corner(corners: Ids, ends: Ids) -> NDArray[np.integer]:
+def _chart_of_corner(corners: Int64Array, ends: Int64Array) -> IntArray:
     """Which connected patch, so which chart, the face sides belong to."""
     patch = np.empty(int(corners.max()) + 1, dtype=np.int32)
     patch[corners] = connected_faces(corners)[:, None]
     return patch[ends[:, 0]]
 
 
-def _face_colors(mesh: TexturedMesh, corners: Ids, seams: _Seams) -> Ids:
+def _face_colors(mesh: TexturedMesh, corners: Int64Array, seams: _Seams) -> Int64Array:
     """The colour (m,) of the nearest seam side; 0 on charts that do not meet themselves."""
     sources, color = _side_colors(seams)
     distance, nearest = _nearest(mesh, corners, sources)
@@ -88,7 +86,7 @@ def _face_colors(mesh: TexturedMesh, corners: Ids, seams: _Seams) -> Ids:
     return of_corner[closest]
 
 
-def _side_colors(seams: _Seams) -> tuple[Ids, Ids]:
+def _side_colors(seams: _Seams) -> tuple[Int64Array, Int64Array]:
     """The corners on seams, and colours that differ across every seam edge.
 
     The tip of a seam is the same corner on both sides: it belongs to neither.
@@ -112,7 +110,9 @@ def _side_colors(seams: _Seams) -> tuple[Ids, Ids]:
     return sources, color[side]
 
 
-def _nearest(mesh: TexturedMesh, corners: Ids, sources: Ids) -> tuple[NDArray[np.float64], Ids]:
+def _nearest(
+    mesh: TexturedMesh, corners: Int64Array, sources: Int64Array
+) -> tuple[Float64Array, Int64Array]:
     """Of every corner the distance along edges to the nearest source, and which (-1: none)."""
     ends = np.stack([corners, np.roll(corners, -1, axis=1)], axis=2).reshape(-1, 2)
     points = mesh.corners

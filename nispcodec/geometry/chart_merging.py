@@ -12,12 +12,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
-from nispcodec.core.asset import FloatArray
+from nispcodec.core.arrays import Float64Array, Int32Array, IntArray
 from nispcodec.geometry.charts import Charts, colored
 
 Kind = tuple[int, bool]
@@ -49,13 +48,13 @@ class Cover:
     uvs          (n, 2)
     """
 
-    points: FloatArray
-    charts: NDArray[np.integer]
-    coordinates: FloatArray
-    uvs: FloatArray
+    points: Float64Array
+    charts: IntArray
+    coordinates: Float64Array
+    uvs: Float64Array
 
 
-def merge_charts(charts: Charts, cover: Cover, twins: NDArray[np.integer], gap: float) -> Charts:
+def merge_charts(charts: Charts, cover: Cover, twins: IntArray, gap: float) -> Charts:
     """Give one number to charts of one material: twins, and those further apart than `gap`.
 
     twins (t, 2): pairs of charts whose UVs are the same function of `coordinates`, near or far.
@@ -90,14 +89,14 @@ def _more(needed: Sequence[Kind], share: float) -> list[Kind]:
     return [*needed, *(k for k, n in textured.items() for _ in range(math.ceil(n * share)))]
 
 
-def _moments(count: int, cover: Cover, numbers: NDArray[np.integer]) -> FloatArray:
+def _moments(count: int, cover: Cover, numbers: IntArray) -> Float64Array:
     """(count, d + 3, d + 3): of each chart the sums of products of coordinates, 1 and UVs."""
     ones = np.ones((len(numbers), 1))
     rows = np.hstack([cover.coordinates, ones, cover.uvs])
     size = rows.shape[1]
     products = (rows[:, :, None] * rows[:, None, :]).reshape(len(rows), -1)
     member = coo_matrix((ones[:, 0], (numbers, np.arange(len(rows)))), (count, len(rows)))
-    moments: FloatArray = (member @ products).reshape(count, size, size)
+    moments: Float64Array = (member @ products).reshape(count, size, size)
     return moments
 
 
@@ -106,7 +105,7 @@ class _Fits:
 
     def __init__(
         self,
-        moments: FloatArray,
+        moments: Float64Array,
         neighbours: list[set[int]],
         kinds: list[Kind],
         palette: Sequence[Kind],
@@ -147,7 +146,7 @@ class _Fits:
         return self.labels != before
 
 
-def _bits(moments: FloatArray) -> FloatArray:
+def _bits(moments: Float64Array) -> Float64Array:
     """(n,) logarithms of how far UVs are from the affine maps of least squares, for every point."""
     points, size = moments[:, -3, -3], moments.shape[1]
     known = moments[:, :-2, :-2] + RIDGE * np.eye(size - 2)
@@ -155,20 +154,18 @@ def _bits(moments: FloatArray) -> FloatArray:
     explained = np.einsum("nij,nij->n", cross, np.linalg.solve(known, cross))
     left = np.trace(moments[:, -2:, -2:], axis1=1, axis2=2) - explained
     apart = np.maximum(left, 0) / np.maximum(points, 1) + FLOOR**2
-    bits: FloatArray = 0.5 * points * np.log2(apart)
+    bits: Float64Array = 0.5 * points * np.log2(apart)
     return bits
 
 
-def _groups(count: int, pairs: NDArray[np.integer]) -> NDArray[np.int32]:
+def _groups(count: int, pairs: IntArray) -> Int32Array:
     """(count,): the same number for all that pairs (t, 2) connect."""
     graph = coo_matrix((np.ones(len(pairs)), (pairs[:, 0], pairs[:, 1])), (count, count))
-    labels: NDArray[np.int32] = connected_components(graph, directed=False)[1]
+    labels: Int32Array = connected_components(graph, directed=False)[1]
     return labels
 
 
-def _neighbours(
-    count: int, points: FloatArray, charts: NDArray[np.integer], gap: float
-) -> list[set[int]]:
+def _neighbours(count: int, points: Float64Array, charts: IntArray, gap: float) -> list[set[int]]:
     """For each of `count` charts, the others that come closer than `gap`.
 
     Told by cells of that size and their neighbours, so that memory is bounded by the points: some
@@ -185,7 +182,7 @@ def _neighbours(
     return neighbours
 
 
-def _near_cells(cells: FloatArray) -> coo_matrix:
+def _near_cells(cells: Float64Array) -> coo_matrix:
     """(c, c) bool: cells (c, 3) of integers that touch, themselves included."""
     pairs = cKDTree(cells).query_pairs(1.0, p=np.inf, output_type="ndarray")
     own = np.arange(len(cells))

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Any, TypeVar
+from typing import TypeVar
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 
-from nispcodec.core.asset import IndexArray, TexturedMesh
+from nispcodec.core.arrays import AnyArray, BoolArray, Int32Array, Int64Array, IntArray
+from nispcodec.core.asset import TexturedMesh
 
 Kind = TypeVar("Kind")
 
@@ -20,9 +20,9 @@ Kind = TypeVar("Kind")
 class Charts:
     """The charts of one mesh: face_charts (m,) int32 in 0 ... k-1; materials (k,); has_uv (k,)."""
 
-    face_charts: IndexArray
-    materials: IndexArray
-    has_uv: NDArray[np.bool_]
+    face_charts: Int32Array
+    materials: Int32Array
+    has_uv: BoolArray
 
     def __len__(self) -> int:
         return len(self.materials)
@@ -68,7 +68,7 @@ def colored(
     return color, kind_of_color
 
 
-def row_ids(rows: NDArray[np.number[Any]]) -> NDArray[np.int64]:
+def row_ids(rows: AnyArray) -> Int64Array:
     """(n, c) -> (n,): equal rows get equal numbers."""
     if not len(rows):
         return np.zeros(0, dtype=np.int64)
@@ -80,14 +80,14 @@ def row_ids(rows: NDArray[np.number[Any]]) -> NDArray[np.int64]:
     return ids
 
 
-def uv_ids(mesh: TexturedMesh) -> NDArray[np.int64]:
+def uv_ids(mesh: TexturedMesh) -> Int64Array:
     """(m, 3): equal UVs get equal numbers; -1 on faces without UV."""
     if not len(mesh.uvs):
         return np.full(mesh.faces.shape, -1, dtype=np.int64)
     return np.where(mesh.has_uv[:, None], row_ids(mesh.uvs)[mesh.uv_faces], -1)
 
 
-def connected_faces(corners: NDArray[np.int64]) -> IndexArray:
+def connected_faces(corners: Int64Array) -> Int32Array:
     faces = len(corners)
     rows = np.repeat(np.arange(faces), 3)
     columns = faces + corners.reshape(-1)
@@ -97,9 +97,9 @@ def connected_faces(corners: NDArray[np.int64]) -> IndexArray:
     return _numbered_by_first(labels)
 
 
-def _numbered_by_first(labels: NDArray[np.integer]) -> IndexArray:
+def _numbered_by_first(labels: IntArray) -> Int32Array:
     _, first, inverse = np.unique(labels, return_index=True, return_inverse=True)
     rank = np.empty(len(first), dtype=np.int32)
     rank[np.argsort(first)] = np.arange(len(first), dtype=np.int32)
-    numbered: IndexArray = rank[inverse.reshape(-1)]
+    numbered: Int32Array = rank[inverse.reshape(-1)]
     return numbered

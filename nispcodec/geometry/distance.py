@@ -6,10 +6,9 @@ from dataclasses import dataclass
 
 import igl
 import numpy as np
-from numpy.typing import NDArray
 
-from nispcodec.core.asset import FloatArray
-from nispcodec.geometry.solid import SHELL, Solid, Triangles, normals
+from nispcodec.core.arrays import BoolArray, Float64Array, Int64Array
+from nispcodec.geometry.solid import SHELL, Solid, normals
 from nispcodec.geometry.z_order import z_order
 
 LIFT = 1e-6
@@ -21,9 +20,9 @@ back the one on the same side is the closest."""
 class Closest:
     """(n,) signed distance; (n,) index of the closest piece; (n, 3) the closest point on it."""
 
-    sdf: FloatArray
-    piece: NDArray[np.int64]
-    point: FloatArray
+    sdf: Float64Array
+    piece: Int64Array
+    point: Float64Array
 
 
 class DistanceField:
@@ -39,7 +38,7 @@ class DistanceField:
         lifted = solid.pieces + LIFT * normals(solid.pieces)[:, None]
         self._sheets = _Tree(lifted, solid.sheet)
 
-    def closest(self, points: FloatArray, signed: bool = True) -> Closest:
+    def closest(self, points: Float64Array, signed: bool = True) -> Closest:
         """Signed distance (negative inside) and closest surface point of (n, 3) points.
 
         Without `signed` all of space counts as outside, which saves most of the time.
@@ -56,7 +55,7 @@ class DistanceField:
             point=np.where(nearer[:, None], sheets.point, walls.point),
         )
 
-    def inside(self, points: FloatArray) -> NDArray[np.bool_]:
+    def inside(self, points: Float64Array) -> BoolArray:
         """Which of (n, 3) points lie inside the bodies, sheets left out."""
         return np.abs(self.solid.winding.at(points)) > 0.5
 
@@ -64,7 +63,7 @@ class DistanceField:
 class _Tree:
     """Unsigned distance to some of the pieces; infinitely far when there are none."""
 
-    def __init__(self, pieces: Triangles, chosen: NDArray[np.bool_]) -> None:
+    def __init__(self, pieces: Float64Array, chosen: BoolArray) -> None:
         self.index = np.flatnonzero(chosen)
         triangles = pieces[self.index]
         self.vertices = np.ascontiguousarray(triangles.reshape(-1, 3))
@@ -73,7 +72,7 @@ class _Tree:
         if len(self.faces):
             self.tree.init(self.vertices, self.faces)
 
-    def closest(self, points: FloatArray) -> Closest:
+    def closest(self, points: Float64Array) -> Closest:
         if not len(self.faces) or not len(points):
             nowhere = np.zeros(len(points), dtype=np.int64)
             return Closest(np.full(len(points), np.inf), nowhere, np.zeros_like(points))

@@ -8,9 +8,8 @@ from the surface, so that the decoder can leave them out.
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
-from nispcodec.core.asset import FloatArray
+from nispcodec.core.arrays import BoolArray, Float64Array
 from nispcodec.geometry.distance import DistanceField
 
 OPEN = 6e-3
@@ -22,7 +21,9 @@ SPREADS = 12
 CHILDREN = 2
 
 
-def crossings(field: DistanceField, points: FloatArray, random: np.random.Generator) -> FloatArray:
+def crossings(
+    field: DistanceField, points: Float64Array, random: np.random.Generator
+) -> Float64Array:
     """Points (k, 3) on membranes, looked for around points (n, 3), normalised frame.
 
     A step shorter than the distance to the surface cannot cross it; where the sign changes on such
@@ -39,8 +40,8 @@ def crossings(field: DistanceField, points: FloatArray, random: np.random.Genera
 
 
 def spread_over(
-    field: DistanceField, seeds: FloatArray, count: int, random: np.random.Generator
-) -> FloatArray:
+    field: DistanceField, seeds: Float64Array, count: int, random: np.random.Generator
+) -> Float64Array:
     """About `count` points (n, 3) on the membranes that the seeds (k, 3) lie on."""
     found = [seeds]
     for _ in range(SPREADS):
@@ -56,8 +57,8 @@ def spread_over(
 
 
 def _bisected(
-    field: DistanceField, start: FloatArray, end: FloatArray, inside: NDArray[np.bool_]
-) -> FloatArray:
+    field: DistanceField, start: Float64Array, end: Float64Array, inside: BoolArray
+) -> Float64Array:
     for _ in range(BISECTIONS):
         middle = (start + end) / 2
         before = field.inside(middle) == inside

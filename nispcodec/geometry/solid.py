@@ -12,9 +12,8 @@ from dataclasses import dataclass
 
 import igl
 import numpy as np
-from numpy.typing import NDArray
 
-from nispcodec.core.asset import FloatArray
+from nispcodec.core.arrays import BoolArray, Float64Array, Int64Array, IntArray
 from nispcodec.core.errors import MeshError
 from nispcodec.geometry.charts import connected_faces, row_ids
 from nispcodec.geometry.z_order import z_order
@@ -48,8 +47,6 @@ CLOSING = 0.25
 
 TINY = 1e-30
 
-Triangles = NDArray[np.float64]
-
 
 @dataclass(frozen=True)
 class Solid:
@@ -63,16 +60,16 @@ class Solid:
     hidden_share, sheet_share: of the mesh's area
     """
 
-    pieces: Triangles
-    parents: NDArray[np.int64]
-    sheet: NDArray[np.bool_]
-    wall: NDArray[np.bool_]
+    pieces: Float64Array
+    parents: Int64Array
+    sheet: BoolArray
+    wall: BoolArray
     winding: Winding
     hidden_share: float
     sheet_share: float
 
 
-def build_solid(corners: Triangles) -> Solid:
+def build_solid(corners: Float64Array) -> Solid:
     """Sort the faces (m, 3, 3), normalised frame. Raises MeshError when none can be seen."""
     free = _free_bodies(corners)
     bodies = corners[~free]
@@ -96,13 +93,13 @@ def build_solid(corners: Triangles) -> Solid:
     )
 
 
-def area(triangles: Triangles) -> FloatArray:
+def area(triangles: Float64Array) -> Float64Array:
     """(n, 3, 3) -> (n,)."""
-    doubled: FloatArray = np.linalg.norm(_cross(triangles), axis=1)
+    doubled: Float64Array = np.linalg.norm(_cross(triangles), axis=1)
     return doubled / 2
 
 
-def normals(triangles: Triangles) -> FloatArray:
+def normals(triangles: Float64Array) -> Float64Array:
     """(n, 3, 3) -> (n, 3), unit length; zero for degenerate triangles."""
     cross = _cross(triangles)
     length = np.linalg.norm(cross, axis=1, keepdims=True)
@@ -112,14 +109,14 @@ def normals(triangles: Triangles) -> FloatArray:
 class Winding:
     """Generalised winding number of a triangle soup (m, 3, 3)."""
 
-    def __init__(self, bodies: Triangles) -> None:
+    def __init__(self, bodies: Float64Array) -> None:
         self._tree = igl.FastWindingNumberBVH()
         self._empty = not len(bodies)
         if not self._empty:
             faces = np.arange(3 * len(bodies), dtype=np.int64).reshape(-1, 3)
             self._tree.init(np.ascontiguousarray(bodies.reshape(-1, 3)), faces)
 
-    def at(self, points: FloatArray) -> FloatArray:
+    def at(self, points: Float64Array) -> Float64Array:
         """(n, 3) -> (n,)."""
         if self._empty or not len(points):
             return np.zeros(len(points))
@@ -133,10 +130,10 @@ _OUTER, _HIDDEN, _SHEET, _THIN, _MIXED = range(5)
 
 
 def _classify(
-    winding: Winding, bodies: Triangles, parents: NDArray[np.int64]
-) -> tuple[Triangles, NDArray[np.int64], NDArray[np.int64]]:
+    winding: Winding, bodies: Float64Array, parents: Int64Array
+) -> tuple[Float64Array, Int64Array, Int64Array]:
     """Subdivide the faces until each piece is of one kind: pieces, their parents, their kinds."""
-    done: list[tuple[Triangles, NDArray[np.int64], NDArray[np.int64]]] = []
+    done: list[tuple[Float64Array, Int64Array, Int64Array]] = []
     todo, todo_parents = bodies, parents
     while len(todo):
         longest = _longest_edge(todo)
@@ -152,15 +149,15 @@ def _classify(
     return everything, np.concatenate(owners), kind
 
 
-def _thin(winding: Winding, pieces: Triangles) -> NDArray[np.bool_]:
+def _thin(winding: Winding, pieces: Float64Array) -> BoolArray:
     """Which pieces (p,) have the outside in front and, a thin wall away, behind them as well."""
     centre, step = pieces.mean(axis=1), THIN * normals(pieces)
-    thin: NDArray[np.bool_] = np.abs(winding.at(centre - step)) <= 0.5
+    thin: BoolArray = np.abs(winding.at(centre - step)) <= 0.5
     thin[thin] = np.abs(winding.at((centre + step)[thin])) <= 0.5
     return thin
 
 
-def _kind(winding: Winding, pieces: Triangles, single: NDArray[np.bool_]) -> NDArray[np.int64]:
+def _kind(winding: Winding, pieces: Float64Array, single: BoolArray) -> Int64Array:
     """Kind of each piece from its centroid, and for all but the small ones from its corners too."""
     kind = _point_kind(winding, pieces, np.full(3, 1 / 3))
     large = np.flatnonzero(~single)
@@ -172,7 +169,7 @@ def _kind(winding: Winding, pieces: Triangles, single: NDArray[np.bool_]) -> NDA
     return kind
 
 
-def _point_kind(winding: Winding, pieces: Triangles, weights: FloatArray) -> NDArray[np.int64]:
+def _point_kind(winding: Winding, pieces: Float64Array, weights: Float64Array) -> Int64Array:
     """Across a face the winding number falls by one, so one look in front is enough.
 
     Not quite by one across a card, whose rim shows: hence the doubtful band.
@@ -184,7 +181,7 @@ def _point_kind(winding: Winding, pieces: Triangles, weights: FloatArray) -> NDA
     return np.select([doubtful, inside], [_SHEET, _HIDDEN], _OUTER)
 
 
-def _free_bodies(corners: Triangles) -> NDArray[np.bool_]:
+def _free_bodies(corners: Float64Array) -> BoolArray:
     """Faces (m,) of bodies that enclose nothing: sheets, whatever the winding number says."""
     vertices = row_ids(corners.reshape(-1, 3)).reshape(-1, 3)
     body = connected_faces(vertices)
@@ -194,24 +191,24 @@ def _free_bodies(corners: Triangles) -> NDArray[np.bool_]:
     open_area = np.bincount(owner[exposed], weights=opening[exposed], minlength=len(size))
     is_open = open_area / size > OPENNESS
     is_card = np.bincount(owner, weights=opening, minlength=len(size)) / size > CARD
-    mask: NDArray[np.bool_] = _with_cards(corners, body, is_card, is_open)[body]
+    mask: BoolArray = _with_cards(corners, body, is_card, is_open)[body]
     return mask
 
 
-def _exposed(corners: Triangles, centre: FloatArray) -> NDArray[np.bool_]:
+def _exposed(corners: Float64Array, centre: Float64Array) -> BoolArray:
     """Which openings, by their centres (n, 3), are large and not plugged by another body.
 
     Closing one, as the winding number does where it passes 1/2, would draw a membrane that nobody
     modelled. Openings within `GAP` of the mesh (flat cards, panels) need no such care.
     """
     undecided = np.abs(np.abs(Winding(corners).at(centre)) - 0.5) < UNDECIDED
-    exposed: NDArray[np.bool_] = undecided & (_gap(corners, centre) > GAP)
+    exposed: BoolArray = undecided & (_gap(corners, centre) > GAP)
     return exposed
 
 
 def _with_cards(
-    corners: Triangles, body: NDArray[np.integer], card: NDArray[np.bool_], free: NDArray[np.bool_]
-) -> NDArray[np.bool_]:
+    corners: Float64Array, body: IntArray, card: BoolArray, free: BoolArray
+) -> BoolArray:
     """The `free` bodies (b,) and the cards among the others that close nothing.
 
     The winding number beside a card is a half and whatever its neighbours add: where there are many
@@ -230,18 +227,18 @@ def _with_cards(
     return free
 
 
-def _gap(corners: Triangles, points: FloatArray) -> FloatArray:
+def _gap(corners: Float64Array, points: Float64Array) -> Float64Array:
     if not len(points):
         return np.zeros(0)
     faces = np.arange(3 * len(corners), dtype=np.int64).reshape(-1, 3)
     vertices = np.ascontiguousarray(corners.reshape(-1, 3))
-    squared: FloatArray = igl.point_mesh_squared_distance(points, vertices, faces)[0]
+    squared: Float64Array = igl.point_mesh_squared_distance(points, vertices, faces)[0]
     return np.sqrt(squared)
 
 
 def _openings(
-    corners: Triangles, vertices: NDArray[np.int64], body: NDArray[np.integer]
-) -> tuple[FloatArray, FloatArray, NDArray[np.integer]]:
+    corners: Float64Array, vertices: Int64Array, body: IntArray
+) -> tuple[Float64Array, Float64Array, IntArray]:
     """Fan triangles that close every boundary loop: their areas, centres and bodies."""
     start = vertices.reshape(-1)
     end = np.roll(vertices, -1, axis=1).reshape(-1)
@@ -259,7 +256,7 @@ def _openings(
     return area(fan), fan.mean(axis=1), owner
 
 
-def _subdivide(triangles: Triangles) -> Triangles:
+def _subdivide(triangles: Float64Array) -> Float64Array:
     """Each triangle into four through its edge midpoints, children of one parent together."""
     a, b, c = triangles[:, 0], triangles[:, 1], triangles[:, 2]
     ab, bc, ca = (a + b) / 2, (b + c) / 2, (c + a) / 2
@@ -268,11 +265,11 @@ def _subdivide(triangles: Triangles) -> Triangles:
     return stacked.reshape(-1, 3, 3)
 
 
-def _longest_edge(triangles: Triangles) -> FloatArray:
+def _longest_edge(triangles: Float64Array) -> Float64Array:
     edges = triangles - np.roll(triangles, 1, axis=1)
-    longest: FloatArray = np.linalg.norm(edges, axis=2).max(axis=1, initial=0.0)
+    longest: Float64Array = np.linalg.norm(edges, axis=2).max(axis=1, initial=0.0)
     return longest
 
 
-def _cross(triangles: Triangles) -> FloatArray:
+def _cross(triangles: Float64Array) -> Float64Array:
     return np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0])

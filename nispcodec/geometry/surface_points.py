@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
-from nispcodec.core.asset import FloatArray
-from nispcodec.geometry.solid import Triangles, area
+from nispcodec.core.arrays import Float64Array, Int64Array
+from nispcodec.geometry.solid import area
 
 
-def barycentric(triangles: Triangles, points: FloatArray) -> FloatArray:
+def barycentric(triangles: Float64Array, points: Float64Array) -> Float64Array:
     """Barycentric coordinates (n, 3) of points (n, 3) in the planes of triangles (n, 3, 3)."""
     ab, ac = triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0]
     ap = points - triangles[:, 0]
@@ -22,7 +21,7 @@ def barycentric(triangles: Triangles, points: FloatArray) -> FloatArray:
     return weights / weights.sum(axis=1, keepdims=True)
 
 
-def random_barycentric(random: np.random.Generator, count: int) -> FloatArray:
+def random_barycentric(random: np.random.Generator, count: int) -> Float64Array:
     """(count, 3) barycentric coordinates, uniform over a triangle."""
     root = np.sqrt(random.random(count))
     second = random.random(count)
@@ -30,22 +29,22 @@ def random_barycentric(random: np.random.Generator, count: int) -> FloatArray:
 
 
 def uniform_surface(
-    random: np.random.Generator, pieces: Triangles, count: int
-) -> tuple[FloatArray, NDArray[np.int64]]:
+    random: np.random.Generator, pieces: Float64Array, count: int
+) -> tuple[Float64Array, Int64Array]:
     """Points (count, 3) uniform by area on pieces (p, 3, 3), and the pieces they lie on."""
     return points_on(random, pieces, area(pieces), count)
 
 
 def points_on(
-    random: np.random.Generator, pieces: Triangles, weight: FloatArray, count: int
-) -> tuple[FloatArray, NDArray[np.int64]]:
+    random: np.random.Generator, pieces: Float64Array, weight: Float64Array, count: int
+) -> tuple[Float64Array, Int64Array]:
     """As `uniform_surface`, with pieces drawn by their weight (p,) in place of their area."""
     piece = random.choice(len(pieces), size=count, p=weight / weight.sum())
     weights = random_barycentric(random, count)
     return np.einsum("nc,ncx->nx", weights, pieces[piece]), piece
 
 
-def uniform_ball(random: np.random.Generator, count: int) -> FloatArray:
+def uniform_ball(random: np.random.Generator, count: int) -> Float64Array:
     """(count, 3) points uniform in the unit ball."""
     direction = random.normal(size=(count, 3))
     direction /= np.linalg.norm(direction, axis=1, keepdims=True)

@@ -10,11 +10,9 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from nispcodec.core.asset import FloatArray
+from nispcodec.core.arrays import BoolArray, Float64Array, Int64Array
 from nispcodec.dataset.sample_set import SampleSet
-from nispcodec.geometry.solid import Triangles
 from nispcodec.geometry.surface_points import uniform_surface
 
 PROBES = 2_000
@@ -45,11 +43,11 @@ class Mirrors:
     uv: int
 
 
-Label = Callable[[FloatArray], SampleSet]
+Label = Callable[[Float64Array], SampleSet]
 """What there is at points (n, 3) of the normalised frame."""
 
 
-def mirrors(label: Label, pieces: Triangles) -> Mirrors:
+def mirrors(label: Label, pieces: Float64Array) -> Mirrors:
     """About which of the planes x, y, z = 0 of the normalised frame an asset is symmetric.
 
     Told by random points around its `pieces` (p, 3, 3), always the same.
@@ -84,7 +82,7 @@ def unlike(label: Label, near: SampleSet, sided: int) -> list[SampleSet]:
     return found
 
 
-def twins(label: Label, surface: SampleSet, mirrored: int) -> NDArray[np.int64]:
+def twins(label: Label, surface: SampleSet, mirrored: int) -> Int64Array:
     """Pairs (t, 2) of charts that are mirror images of each other, with the same UVs.
 
     Most of a chart's points of the `surface` have their image on its twin. `mirrored` has a bit for
@@ -101,7 +99,7 @@ def twins(label: Label, surface: SampleSet, mirrored: int) -> NDArray[np.int64]:
     return np.concatenate(found)
 
 
-def folded(points: FloatArray, mirrored: int) -> FloatArray:
+def folded(points: Float64Array, mirrored: int) -> Float64Array:
     """(n, 3) with the absolute value of the axes that have a bit in `mirrored`."""
     bits = [bool(mirrored >> axis & 1) for axis in range(3)]
     return np.where(bits, np.abs(points), points)
@@ -111,18 +109,18 @@ def _axes(bits: int) -> list[int]:
     return [axis for axis in range(3) if bits >> axis & 1]
 
 
-def _flip(axis: int) -> FloatArray:
+def _flip(axis: int) -> Float64Array:
     signs = np.ones(3)
     signs[axis] = -1
     return signs
 
 
-def _same_uv(here: SampleSet, there: SampleSet) -> NDArray[np.bool_]:
-    same: NDArray[np.bool_] = (np.abs(here.uv - there.uv) < ALIKE).all(axis=1)
+def _same_uv(here: SampleSet, there: SampleSet) -> BoolArray:
+    same: BoolArray = (np.abs(here.uv - there.uv) < ALIKE).all(axis=1)
     return same
 
 
-def _probes(pieces: Triangles) -> FloatArray:
+def _probes(pieces: Float64Array) -> Float64Array:
     """(PROBES, 3) points on either side of the surface, near enough for any part to be seen."""
     random = np.random.default_rng(0)
     surface, _ = uniform_surface(random, pieces, PROBES)

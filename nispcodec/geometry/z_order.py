@@ -7,14 +7,13 @@ times (docs/lab-notes.md).
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
-from nispcodec.core.asset import FloatArray
+from nispcodec.core.arrays import Float64Array, Int64Array
 
 BITS = 7
 
 
-def z_order(points: FloatArray) -> NDArray[np.int64]:
+def z_order(points: Float64Array) -> Int64Array:
     """The order (n,) of points (n, 3) along the curve through the cells of their bounding box."""
     if not len(points):
         return np.zeros(0, dtype=np.int64)

@@ -11,15 +11,11 @@ from collections.abc import Callable
 from threading import local
 
 import numpy as np
-from numpy.typing import NDArray
 
+from nispcodec.core.arrays import Float32Array, Int32Array, IntArray
 from nispcodec.core.errors import QueryError
 from nispcodec.core.network import Network, NetworkSpec
 from nispcodec.infer.parallel import on_every_core
-
-Floats = NDArray[np.float32]
-Charts = NDArray[np.int32]
-Integers = NDArray[np.integer]
 
 # Bytes of two layers' activations of a block: they stay in a core's cache. Smaller blocks cost more
 # calls than they save, and threads wait for each other at every call.
@@ -27,7 +23,9 @@ CACHE = 1 << 20
 SMALLEST = 64
 
 
-def evaluate(network: Network, points: Floats, charts: Integers | None = None) -> Floats:
+def evaluate(
+    network: Network, points: Float32Array, charts: IntArray | None = None
+) -> Float32Array:
     """The network's outputs at points of the normalised frame.
 
     points (n, 3) float32, normalised frame; charts (n,) integers, wanted by networks that are
@@ -45,7 +43,7 @@ def evaluate(network: Network, points: Floats, charts: Integers | None = None) -
     return result
 
 
-def classify(network: Network, points: Floats, among: int | None = None) -> Charts:
+def classify(network: Network, points: Float32Array, among: int | None = None) -> Int32Array:
     """The number of the largest output at each point: (n, 3) float32 -> (n,) int32.
 
     `among`: only so many outputs, the first ones, are looked at.
@@ -60,7 +58,9 @@ def classify(network: Network, points: Floats, among: int | None = None) -> Char
     return result
 
 
-def contrast(network: Network, points: Floats, first: Charts, second: Charts) -> Floats:
+def contrast(
+    network: Network, points: Float32Array, first: Int32Array, second: Int32Array
+) -> Float32Array:
     """Output `first` minus output `second` at each point: (n, 3), (n,), (n,) -> (n,) float32."""
     result = np.empty(len(points), np.float32)
     forward = _Forward(network)
@@ -74,7 +74,7 @@ def contrast(network: Network, points: Floats, first: Charts, second: Charts) ->
     return result
 
 
-def gradient(network: Network, points: Floats) -> tuple[Floats, Floats]:
+def gradient(network: Network, points: Float32Array) -> tuple[Float32Array, Float32Array]:
     """Values and analytic gradients of a network with one output and no conditioning.
 
     points (n, 3) float32, normalised frame -> values (n,), gradients (n, 3), both float32. On the
@@ -102,16 +102,16 @@ class _Forward:
             _folded(weight, bias, np.float32(scale))
             for (weight, bias), scale in zip(network.layers, scales, strict=True)
         ]
-        self.embedding: Floats | None = None
+        self.embedding: Float32Array | None = None
         if self.spec.embedding:
             self.embedding = np.ascontiguousarray(network.tensors["embedding"].T)
-        self.frames: Floats | None = None
+        self.frames: Float32Array | None = None
         if self.spec.conditioning == "frames":
             self.frames = _frames(network)
         self.mirrored = np.array(self.spec.mirrored)[:, None]
         self._own = local()
 
-    def __call__(self, points: Floats, charts: Charts | None) -> Floats:
+    def __call__(self, points: Float32Array, charts: Int32Array | None) -> Float32Array:
         """Outputs (outputs, n) at points (n, 3)."""
         activations = self._input(points, charts)
         buffers = self._buffers(2, len(points))
@@ -124,7 +124,7 @@ class _Forward:
             outputs += self._framed(points, charts)
         return self._output(outputs)
 
-    def _framed(self, points: Floats, charts: Charts) -> Floats:
+    def _framed(self, points: Float32Array, charts: Int32Array) -> Float32Array:
         """The affine map of each point's chart (outputs, n)."""
         assert self.frames is not None
         coordinates = self._coordinates(points)
@@ -134,19 +134,19 @@ class _Forward:
             framed += slopes[:, axis] * coordinate
         return framed
 
-    def _buffers(self, layers: int, count: int) -> Floats:
+    def _buffers(self, layers: int, count: int) -> Float32Array:
         """Room for (layers, width + 1, count), the thread's own: new memory costs time."""
         size = layers * (max(self.spec.hidden) + 1) * count
-        room: Floats | None = getattr(self._own, "room", None)
+        room: Float32Array | None = getattr(self._own, "room", None)
         if room is None or room.size < size:
             room = self._own.room = np.empty(size, np.float32)
         return room[:size].reshape(layers, -1, count)
 
-    def with_gradient(self, points: Floats) -> tuple[Floats, Floats]:
+    def with_gradient(self, points: Float32Array) -> tuple[Float32Array, Float32Array]:
         """Values (n,) and gradients (n, 3) by one pass forwards and one backwards."""
         activations = encoded = self._input(points, None)
         buffers = self._buffers(2 + len(self.spec.hidden), len(points))
-        slopes: list[Floats] = []
+        slopes: list[Float32Array] = []
         for index, layer in enumerate(self.layers[:-1]):
             following = _before(layer, activations, buffers[index % 2])
             slopes.append(buffers[2 + index, : len(layer)])
@@ -162,7 +162,7 @@ class _Forward:
             slope = self._through_mirror(points.T, slope)
         return value[0], slope.T
 
-    def _input(self, points: Floats, charts: Charts | None) -> Floats:
+    def _input(self, points: Float32Array, charts: Int32Array | None) -> Float32Array:
         coordinates = self._coordinates(points)
         if self.spec.conditioning == "scalar" and charts is not None:
             scalar = (2 * charts + 1).astype(np.float32) / np.float32(self.spec.charts) - 1
@@ -177,7 +177,7 @@ class _Forward:
             rows[len(coordinates) : -1] = self.embedding.take(charts, axis=1)
         return rows
 
-    def _coordinates(self, points: Floats) -> Floats:
+    def _coordinates(self, points: Float32Array) -> Float32Array:
         """What of the points (n, 3) enters: (3, n), and a row for each coordinate that follows."""
         coordinates = points.T
         if not self.spec.mirror:
@@ -185,38 +185,38 @@ class _Forward:
         folded = np.where(self.mirrored, np.abs(coordinates), coordinates)
         return np.vstack([folded, coordinates[list(self.spec.sided)]])
 
-    def _through_encoding(self, encoded: Floats, slope: Floats) -> Floats:
+    def _through_encoding(self, encoded: Float32Array, slope: Float32Array) -> Float32Array:
         if self.spec.encoding == "identity":
             return slope
         shape = (-1, self.spec.levels, 2, slope.shape[1])
         waves, slopes = encoded.reshape(shape), slope.reshape(shape)
         turned = slopes[:, :, 0] * waves[:, :, 1] - slopes[:, :, 1] * waves[:, :, 0]
-        result: Floats = (turned * self._frequencies[:, None]).sum(axis=1)
+        result: Float32Array = (turned * self._frequencies[:, None]).sum(axis=1)
         return result
 
-    def _through_mirror(self, coordinates: Floats, slope: Floats) -> Floats:
+    def _through_mirror(self, coordinates: Float32Array, slope: Float32Array) -> Float32Array:
         folded = np.where(self.mirrored, slope[:3] * np.sign(coordinates), slope[:3])
         folded[list(self.spec.sided)] += slope[3:]
         return folded
 
     @property
-    def _frequencies(self) -> Floats:
+    def _frequencies(self) -> Float32Array:
         return np.array([np.pi * 2**level for level in range(self.spec.levels)], np.float32)
 
-    def _activate(self, values: Floats) -> None:
+    def _activate(self, values: Float32Array) -> None:
         if self.spec.activation == "sine":
             np.sin(values, out=values)
         else:
             np.maximum(values, 0, out=values)
 
-    def _activation_slope(self, before: Floats, out: Floats) -> None:
+    def _activation_slope(self, before: Float32Array, out: Float32Array) -> None:
         # The factor w0 of a sine layer is already in the folded weights.
         if self.spec.activation == "sine":
             np.cos(before, out=out)
         else:
             np.greater(before, 0, out=out)
 
-    def _output(self, values: Floats) -> Floats:
+    def _output(self, values: Float32Array) -> Float32Array:
         if self.spec.output == "tanh":
             return np.tanh(values)
         if self.spec.output == "sigmoid":
@@ -225,7 +225,7 @@ class _Forward:
             values *= 0.5
         return values
 
-    def _output_slope(self, outputs: Floats) -> Floats:
+    def _output_slope(self, outputs: Float32Array) -> Float32Array:
         if self.spec.output == "tanh":
             return 1 - outputs * outputs
         if self.spec.output == "sigmoid":
@@ -233,7 +233,7 @@ class _Forward:
         return np.ones_like(outputs)
 
 
-def _largest(outputs: Floats) -> NDArray[np.unsignedinteger]:
+def _largest(outputs: Float32Array) -> IntArray:
     """The first row that is largest in each column, (rows, n) -> (n,).
 
     As argmax does, in a fifth to three fifths of its time: down columns argmax goes one by one.
@@ -244,7 +244,7 @@ def _largest(outputs: Floats) -> NDArray[np.unsignedinteger]:
     return count - (largest.view(np.uint8) * numbers[:, None]).max(axis=0)
 
 
-def _before(layer: Floats, activations: Floats, room: Floats) -> Floats:
+def _before(layer: Float32Array, activations: Float32Array, room: Float32Array) -> Float32Array:
     """A layer's values before its activation, in `room`: (width + 1, n), the last row ones."""
     following = room[: len(layer) + 1]
     following[-1] = 1
@@ -252,7 +252,7 @@ def _before(layer: Floats, activations: Floats, room: Floats) -> Floats:
     return following
 
 
-def _folded(weight: Floats, bias: Floats, scale: np.float32) -> Floats:
+def _folded(weight: Float32Array, bias: Float32Array, scale: np.float32) -> Float32Array:
     """(out, in + 1): `[weight | bias]`, scaled."""
     layer = np.empty((len(bias), weight.shape[1] + 1), np.float32)
     np.multiply(weight, scale, out=layer[:, :-1])
@@ -260,7 +260,7 @@ def _folded(weight: Floats, bias: Floats, scale: np.float32) -> Floats:
     return layer
 
 
-def _frames(network: Network) -> Floats:
+def _frames(network: Network) -> Float32Array:
     """(outputs, coordinates + 1, charts): the slopes of each output, then its offset."""
     slopes, offsets = network.tensors["slopes"], network.tensors["offsets"]
     each = slopes.reshape(len(slopes), network.spec.outputs, -1)
@@ -278,7 +278,7 @@ def block_size(spec: NetworkSpec) -> int:
     return max(CACHE // (8 * max(spec.hidden)), SMALLEST)
 
 
-def _checked_charts(spec: NetworkSpec, count: int, charts: Integers | None) -> Charts | None:
+def _checked_charts(spec: NetworkSpec, count: int, charts: IntArray | None) -> Int32Array | None:
     if spec.conditioning == "none":
         return None
     if charts is None or charts.shape != (count,):

@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from nispcodec.core.arrays import Float32Array, IntArray
 from nispcodec.core.document import Document
 from nispcodec.infer.evaluate import evaluate
 
-Floats = NDArray[np.float32]
 
-
-def asset_uv(document: Document, points: Floats, charts: NDArray[np.integer]) -> Floats:
+def asset_uv(document: Document, points: Float32Array, charts: IntArray) -> Float32Array:
     """UV of points (n, 3), normalised frame, on charts (n,) -> (n, 2); (0, 0) without UV."""
     if document.uv is None:
         return np.zeros((len(points), 2), np.float32)

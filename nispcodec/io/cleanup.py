@@ -5,13 +5,11 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
-from nispcodec.core.asset import FloatArray, IndexArray, TexturedMesh
+from nispcodec.core.arrays import BoolArray, Float64Array, Int32Array
+from nispcodec.core.asset import TexturedMesh
 from nispcodec.core.errors import MeshError
 from nispcodec.geometry.charts import row_ids
-
-Mask = NDArray[np.bool_]
 
 # A triangle lower than this share of its longest edge is a line.
 FLATTEST = 1e-10
@@ -36,18 +34,18 @@ def clean(mesh: TexturedMesh, name: str) -> TexturedMesh:
     return _drop_unreferenced(mesh)
 
 
-def degenerate_faces(mesh: TexturedMesh) -> Mask:
+def degenerate_faces(mesh: TexturedMesh) -> BoolArray:
     """(m,) bool: faces that repeat a position or whose area is zero to rounding."""
     corners = mesh.corners
     edges = np.roll(corners, -1, axis=1) - corners
     longest = np.linalg.norm(edges, axis=2).max(axis=1)
     scaled = edges / np.where(longest > 0, longest, 1.0)[:, None, None]
     height = np.linalg.norm(np.cross(scaled[:, 0], scaled[:, 1]), axis=1)
-    flat: Mask = (height <= FLATTEST) | (edges == 0).all(axis=2).any(axis=1)
+    flat: BoolArray = (height <= FLATTEST) | (edges == 0).all(axis=2).any(axis=1)
     return flat
 
 
-def duplicate_faces(mesh: TexturedMesh) -> Mask:
+def duplicate_faces(mesh: TexturedMesh) -> BoolArray:
     """(m,) bool: faces equal to an earlier one in positions, orientation, UVs and material."""
     # Adding zero makes -0 and 0 the same bits.
     position = row_ids(mesh.positions + 0.0)[mesh.faces]
@@ -61,7 +59,7 @@ def duplicate_faces(mesh: TexturedMesh) -> Mask:
     return repeated
 
 
-def _expect_moderate(positions: FloatArray, name: str) -> None:
+def _expect_moderate(positions: Float64Array, name: str) -> None:
     largest = np.abs(positions).max()
     if largest > LARGEST_COORDINATE:
         raise MeshError(
@@ -69,7 +67,7 @@ def _expect_moderate(positions: FloatArray, name: str) -> None:
         )
 
 
-def _drop_faces(mesh: TexturedMesh, dropped: Mask, kind: str) -> TexturedMesh:
+def _drop_faces(mesh: TexturedMesh, dropped: BoolArray, kind: str) -> TexturedMesh:
     if not dropped.any():
         return mesh
     return replace(
@@ -99,7 +97,7 @@ def _drop_unreferenced(mesh: TexturedMesh) -> TexturedMesh:
     )
 
 
-def _compact(rows: FloatArray, faces: IndexArray) -> tuple[FloatArray, IndexArray]:
+def _compact(rows: Float64Array, faces: Int32Array) -> tuple[Float64Array, Int32Array]:
     """Keep the rows that faces use, in their order; index -1 stays -1."""
     used = np.zeros(len(rows) + 1, dtype=bool)
     used[faces] = True

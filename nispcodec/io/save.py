@@ -5,16 +5,17 @@ from __future__ import annotations
 from collections.abc import Callable
 from pathlib import Path
 
+from nispcodec.core.arrays import Float32Array
 from nispcodec.core.asset import TexturedMesh
 from nispcodec.core.atomic_write import write_atomic
 from nispcodec.core.errors import MeshError
-from nispcodec.io.write.colors import Colors, untextured
+from nispcodec.io.write.colors import untextured
 from nispcodec.io.write.glb import glb_bytes
 from nispcodec.io.write.obj import obj_files
 from nispcodec.io.write.ply import ply_bytes
 from nispcodec.io.write.stl import stl_bytes
 
-SINGLE: dict[str, Callable[[TexturedMesh, Colors | None], bytes]] = {
+SINGLE: dict[str, Callable[[TexturedMesh, Float32Array | None], bytes]] = {
     ".glb": glb_bytes,
     ".ply": ply_bytes,
     ".stl": stl_bytes,
@@ -22,7 +23,7 @@ SINGLE: dict[str, Callable[[TexturedMesh, Colors | None], bytes]] = {
 SUFFIXES = (*SINGLE, ".obj")
 
 
-def write_mesh(mesh: TexturedMesh, path: Path, colors: Colors | None = None) -> list[Path]:
+def write_mesh(mesh: TexturedMesh, path: Path, colors: Float32Array | None = None) -> list[Path]:
     """Write the mesh in the format of the path's suffix -> the files written, `path` last.
 
     An OBJ puts its MTL and images beside it. Each file is written under another name and then
@@ -42,7 +43,7 @@ def write_mesh(mesh: TexturedMesh, path: Path, colors: Colors | None = None) -> 
     return written
 
 
-def _files(mesh: TexturedMesh, path: Path, colors: Colors | None) -> dict[str, bytes]:
+def _files(mesh: TexturedMesh, path: Path, colors: Float32Array | None) -> dict[str, bytes]:
     suffix = path.suffix.lower()
     if suffix == ".obj":
         files = obj_files(mesh, path.stem, colors)

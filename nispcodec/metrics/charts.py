@@ -5,11 +5,8 @@ from __future__ import annotations
 from typing import Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
-from nispcodec.metrics.surface import Array
-
-Labels = NDArray[np.integer]
+from nispcodec.core.arrays import Float64Array, FloatArray, IntArray
 
 POINTS = 20_000
 CLEARLY = 5e-3
@@ -19,14 +16,16 @@ class Chooser(Protocol):
     """A model: the charts (n,) of world points (n, 3), and their UVs (n, 2) on given charts."""
 
     @property
-    def chart_materials(self) -> Labels: ...
+    def chart_materials(self) -> IntArray: ...
 
-    def charts(self, points: Array) -> Labels: ...
+    def charts(self, points: Float64Array) -> IntArray: ...
 
-    def uv(self, points: Array, *, charts: Labels) -> NDArray[np.floating]: ...
+    def uv(self, points: Float64Array, *, charts: IntArray) -> FloatArray: ...
 
 
-def chart_accuracy(model: Chooser, points: Array, uvs: Array, materials: Labels) -> float:
+def chart_accuracy(
+    model: Chooser, points: Float64Array, uvs: Float64Array, materials: IntArray
+) -> float:
     """Share of points on the surface whose predicted chart is right.
 
     A model numbers charts as it likes: it may cut one, and give far ones the same number. So a
@@ -46,7 +45,9 @@ def chart_accuracy(model: Chooser, points: Array, uvs: Array, materials: Labels)
     return float((alike & near).mean())
 
 
-def _error(model: Chooser, points: Array, uvs: Array, charts: Labels) -> Array:
+def _error(
+    model: Chooser, points: Float64Array, uvs: Float64Array, charts: IntArray
+) -> Float64Array:
     found = model.uv(points, charts=charts)
-    error: Array = np.linalg.norm(found - uvs, axis=1)
+    error: Float64Array = np.linalg.norm(found - uvs, axis=1)
     return error

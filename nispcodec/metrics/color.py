@@ -7,14 +7,15 @@ from functools import reduce
 
 import numpy as np
 
-from nispcodec.core.texture import Image, base_colors
+from nispcodec.core.arrays import Float32Array
+from nispcodec.core.texture import base_colors
 from nispcodec.metrics.geometry import Matches
 from nispcodec.metrics.psnr import psnr
 from nispcodec.metrics.surface import Surface, SurfacePoints
 from nispcodec.metrics.uv import uv_at
 
 
-def color_at(surface: Surface, points: SurfacePoints) -> Image:
+def color_at(surface: Surface, points: SurfacePoints) -> Float32Array:
     """(n, 4) float32: sRGB-encoded base colour and alpha at points of a surface.
 
     Faces without UV show their material's factor alone.

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from nispcodec.core.arrays import Float64Array
 from nispcodec.core.asset import TexturedMesh
 from nispcodec.core.document import Frame
 from nispcodec.metrics.charts import Chooser, chart_accuracy
@@ -20,7 +21,7 @@ from nispcodec.metrics.geometry import (
 from nispcodec.metrics.parameterisation import distortion_summary
 from nispcodec.metrics.sides import Sides, sides_of
 from nispcodec.metrics.spurious import spurious_components
-from nispcodec.metrics.surface import Array, Surface, SurfacePoints, frame_of
+from nispcodec.metrics.surface import Surface, SurfacePoints, frame_of
 from nispcodec.metrics.uv import uv_at, uv_errors, uv_summary
 
 Directions = dict[str, Matches]
@@ -118,7 +119,7 @@ def _uv(original: Surface, decoded: Surface, directions: Directions) -> Group:
     return _with_larger({name: uv_summary(each) for name, each in errors.items() if len(each)})
 
 
-def _charts(original: Surface, seen: SurfacePoints, world: Array, model: Chooser) -> Group:
+def _charts(original: Surface, seen: SurfacePoints, world: Float64Array, model: Chooser) -> Group:
     materials = original.mesh.face_materials[seen.faces]
     return {"accuracy": chart_accuracy(model, world, uv_at(original, seen), materials)}
 

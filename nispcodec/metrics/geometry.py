@@ -7,8 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from nispcodec.core.arrays import Float64Array
 from nispcodec.metrics.psnr import psnr
-from nispcodec.metrics.surface import Array, Surface, SurfacePoints
+from nispcodec.metrics.surface import Surface, SurfacePoints
 
 
 @dataclass(frozen=True)
@@ -22,18 +23,18 @@ class Matches:
         return Matches(self.original + other.original, self.decoded + other.decoded)
 
     @property
-    def distances(self) -> Array:
+    def distances(self) -> Float64Array:
         """(n,): how far the points of each pair lie apart."""
-        distances: Array = np.linalg.norm(self.offsets, axis=1)
+        distances: Float64Array = np.linalg.norm(self.offsets, axis=1)
         return distances
 
     @property
-    def offsets(self) -> Array:
+    def offsets(self) -> Float64Array:
         """(n, 3): from the original's point to the decoded one."""
         return self.decoded.positions - self.original.positions
 
 
-def distance_summary(distances: Array) -> dict[str, float]:
+def distance_summary(distances: Float64Array) -> dict[str, float]:
     """Mean, 99th percentile and maximum of (n,) distances."""
     return {
         "mean": float(distances.mean()),
@@ -63,7 +64,7 @@ def normal_consistency(original: Surface, decoded: Surface, matches: Matches) ->
     return float(np.abs((first * second).sum(axis=1)).mean())
 
 
-def _along(original: Surface, matches: Matches) -> Array:
+def _along(original: Surface, matches: Matches) -> Float64Array:
     normals = original.normals[matches.original.faces]
-    along: Array = (matches.offsets * normals).sum(axis=1)
+    along: Float64Array = (matches.offsets * normals).sum(axis=1)
     return along

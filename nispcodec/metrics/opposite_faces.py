@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
+
+from nispcodec.core.arrays import Float64Array, Int64Array, Uint64Array
 
 # Odd, so that multiplying loses no bit.
 FACTORS = np.array([0x9E3779B97F4A7C15, 0xC2B2AE3D27D4EB4F, 0x165667B19E3779F9], np.uint64)
 DOWN = np.uint64(32)
 
 
-def twins(corners: NDArray[np.float64], normals: NDArray[np.float64]) -> NDArray[np.int64]:
+def twins(corners: Float64Array, normals: Float64Array) -> Int64Array:
     """(m,): for each face another one with the same corners that looks the other way; -1 for none.
 
     corners (m, 3, 3), normals (m, 3).
@@ -26,10 +27,10 @@ def twins(corners: NDArray[np.float64], normals: NDArray[np.float64]) -> NDArray
     return found
 
 
-def _codes(positions: NDArray[np.float64]) -> NDArray[np.uint64]:
+def _codes(positions: Float64Array) -> Uint64Array:
     """(..., 3) -> (...): a number for each position, another one for any other but by accident."""
     # Adding zero makes -0 and 0 the same bits; a sign alone must not stay in the uppermost.
     bits = (positions + 0.0).view(np.uint64)
     mixed = (bits ^ bits >> DOWN) * FACTORS
-    codes: NDArray[np.uint64] = ((mixed ^ mixed >> DOWN) * FACTORS[::-1]).sum(axis=-1)
+    codes: Uint64Array = ((mixed ^ mixed >> DOWN) * FACTORS[::-1]).sum(axis=-1)
     return codes

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import numpy as np
 
-from nispcodec.metrics.surface import Array, Surface
+from nispcodec.core.arrays import Float64Array
+from nispcodec.metrics.surface import Surface
 
 # Beyond this a triangle has collapsed, on the surface or in UV, and its number is rounding noise.
 COLLAPSED = 1e6
 
 
-def triangle_distortions(surface: Surface) -> Array:
+def triangle_distortions(surface: Surface) -> Float64Array:
     """max(sigma_max, 1 / sigma_min) of each textured triangle's map from surface to UV.
 
     Sorkine et al. 2002, and the paper's section on distortion; the surface is in the normalised
@@ -29,11 +30,13 @@ def triangle_distortions(surface: Surface) -> Array:
     second = (t - first * across[:, None]) / height[:, None]
     large, small = _singular_values(first, second)
     with np.errstate(divide="ignore"):
-        distortions: Array = np.maximum(large, 1 / small)
+        distortions: Float64Array = np.maximum(large, 1 / small)
     return distortions
 
 
-def _singular_values(first: Array, second: Array) -> tuple[Array, Array]:
+def _singular_values(
+    first: Float64Array, second: Float64Array
+) -> tuple[Float64Array, Float64Array]:
     """Of 2 x 2 matrices given by their columns (n, 2): the larger and the smaller (n,)."""
     # A matrix is a rotation with scaling plus a reflection with scaling (Blinn 1996).
     turned = np.hypot(first[:, 0] + second[:, 1], first[:, 1] - second[:, 0]) / 2

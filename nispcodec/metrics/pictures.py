@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from nispcodec.core.arrays import Float32Array
 from nispcodec.core.errors import QueryError
 from nispcodec.metrics.psnr import psnr
 
 
-def compare_pictures(
-    original: NDArray[np.float32], decoded: NDArray[np.float32]
-) -> dict[str, float]:
+def compare_pictures(original: Float32Array, decoded: Float32Array) -> dict[str, float]:
     """PSNR (dB, peak 1) and SSIM (Wang et al. 2004) of two (h, w, 3) pictures in [0, 1].
 
     Raises QueryError when the shapes differ.

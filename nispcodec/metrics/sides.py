@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from nispcodec.core.arrays import BoolArray
 from nispcodec.metrics.surface import Surface, SurfacePoints
 
 PROBE = 2e-3
@@ -19,11 +19,11 @@ ACCURACY = 1.5
 class Sides:
     """Of each point (n,) bool: hidden (inside on both sides) and sheet (inside on neither)."""
 
-    hidden: NDArray[np.bool_]
-    sheet: NDArray[np.bool_]
+    hidden: BoolArray
+    sheet: BoolArray
 
     @property
-    def outer(self) -> NDArray[np.bool_]:
+    def outer(self) -> BoolArray:
         """(n,) bool: at least one side is outside."""
         return ~self.hidden
 

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from nispcodec.core.arrays import Float64Array, Int64Array, IntArray
 from nispcodec.core.asset import TexturedMesh
-from nispcodec.metrics.surface import Array, Surface, frame_of
+from nispcodec.metrics.surface import Surface, frame_of
 
 FAR = 0.02
 
@@ -31,15 +31,15 @@ def spurious_components(decoded: TexturedMesh, original: TexturedMesh) -> dict[s
     return {"count": int(far.sum()), "area": float(surface.areas[far[labels]].sum())}
 
 
-def _distances(known: Surface, surface: Surface, vertices: NDArray[np.integer]) -> Array:
+def _distances(known: Surface, surface: Surface, vertices: IntArray) -> Float64Array:
     positions = surface.positions[vertices]
     if len(positions) == 0:
         return np.zeros(0)
-    distances: Array = np.linalg.norm(known.closest(positions).positions - positions, axis=1)
+    distances: Float64Array = np.linalg.norm(known.closest(positions).positions - positions, axis=1)
     return distances
 
 
-def components(mesh: TexturedMesh) -> NDArray[np.int64]:
+def components(mesh: TexturedMesh) -> Int64Array:
     """(m,): the component of each face; vertices at equal positions count as one."""
     from scipy.sparse import coo_array
     from scipy.sparse.csgraph import connected_components

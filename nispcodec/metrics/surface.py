@@ -6,15 +6,12 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
+from nispcodec.core.arrays import BoolArray, Float64Array, Int64Array
 from nispcodec.core.asset import TexturedMesh
 from nispcodec.core.document import Frame
 from nispcodec.core.errors import MeshError
 from nispcodec.metrics.opposite_faces import twins
-
-Array = NDArray[np.float64]
-Indices = NDArray[np.int64]
 
 FLAT = 1e-7
 """A face whose height is less than this part of its longest edge is a line, to double precision."""
@@ -42,14 +39,14 @@ def frame_of(mesh: TexturedMesh) -> Frame:
 class SurfacePoints:
     """Points on a surface: faces (n,), barycentric weights (n, 3), positions (n, 3) normalised."""
 
-    faces: Indices
-    weights: Array
-    positions: Array
+    faces: Int64Array
+    weights: Float64Array
+    positions: Float64Array
 
     def __len__(self) -> int:
         return len(self.faces)
 
-    def __getitem__(self, chosen: NDArray[np.bool_]) -> SurfacePoints:
+    def __getitem__(self, chosen: BoolArray) -> SurfacePoints:
         return SurfacePoints(self.faces[chosen], self.weights[chosen], self.positions[chosen])
 
     def __add__(self, other: SurfacePoints) -> SurfacePoints:
@@ -68,7 +65,7 @@ class Surface:
     """
 
     mesh: TexturedMesh
-    positions: Array
+    positions: Float64Array
 
     @classmethod
     def of(cls, mesh: TexturedMesh, frame: Frame) -> Surface:
@@ -76,23 +73,23 @@ class Surface:
         return cls(mesh, frame.to_normalised(mesh.positions))
 
     @cached_property
-    def corners(self) -> Array:
+    def corners(self) -> Float64Array:
         """(m, 3, 3): the corners of every face."""
         return self.positions[self.mesh.faces]
 
     @cached_property
-    def areas(self) -> Array:
+    def areas(self) -> Float64Array:
         """(m,): the area of every face."""
-        lengths: Array = np.linalg.norm(self._crosses, axis=1)
+        lengths: Float64Array = np.linalg.norm(self._crosses, axis=1)
         return lengths / 2
 
     @cached_property
-    def normals(self) -> Array:
+    def normals(self) -> Float64Array:
         """(m, 3): the unit normal of every face, 0 for a face without area."""
         return self._crosses / np.maximum(2 * self.areas, np.finfo(np.float64).tiny)[:, None]
 
     @cached_property
-    def twins(self) -> Indices:
+    def twins(self) -> Int64Array:
         """(m,): the face back to back with each face, -1 where there is none."""
         return twins(self.corners, self.normals)
 
@@ -111,7 +108,7 @@ class Surface:
         weights = np.stack([1 - root, root * (1 - second), root * second], axis=1)
         return SurfacePoints(faces, weights, self.interpolate(faces, weights))
 
-    def outlook(self, points: SurfacePoints) -> Array:
+    def outlook(self, points: SurfacePoints) -> Float64Array:
         """(n, 3): from where to look at another surface for what corresponds to some points.
 
         From the points themselves; on two faces back to back from `BEFORE` in front of their own,
@@ -122,7 +119,7 @@ class Surface:
         positions[doubled] += BEFORE * self.normals[points.faces[doubled]]
         return positions
 
-    def closest(self, points: Array) -> SurfacePoints:
+    def closest(self, points: Float64Array) -> SurfacePoints:
         """For each of (n, 3) points the closest point of the surface.
 
         Of two faces back to back that is on the one which looks towards the point.
@@ -134,33 +131,33 @@ class Surface:
         closest = self.facing(self._solid[found], positions - points)
         return SurfacePoints(closest, self.weights(closest, positions), positions)
 
-    def weights(self, faces: Indices, positions: Array) -> Array:
+    def weights(self, faces: Int64Array, positions: Float64Array) -> Float64Array:
         """(n, 3) barycentric weights of positions (n, 3) on faces (n,)."""
         import igl
 
         a, b, c = np.moveaxis(self.corners[faces], 1, 0)
-        weights: Array = np.clip(igl.barycentric_coordinates(positions, a, b, c), 0, 1)
+        weights: Float64Array = np.clip(igl.barycentric_coordinates(positions, a, b, c), 0, 1)
         return weights / weights.sum(axis=1, keepdims=True)
 
-    def facing(self, faces: Indices, towards: Array) -> Indices:
+    def facing(self, faces: Int64Array, towards: Float64Array) -> Int64Array:
         """Faces (n,), or of two back to back the one met from its front in directions (n, 3)."""
         twin = self.twins[faces]
         behind = (self.normals[faces] * towards).sum(axis=1) > 0
         return np.where(behind & (twin >= 0), twin, faces)
 
-    def interpolate(self, faces: Indices, weights: Array) -> Array:
+    def interpolate(self, faces: Int64Array, weights: Float64Array) -> Float64Array:
         """(n, 3) positions at barycentric weights (n, 3) of faces (n,)."""
-        positions: Array = np.einsum("nk,nkd->nd", weights, self.corners[faces])
+        positions: Float64Array = np.einsum("nk,nkd->nd", weights, self.corners[faces])
         return positions
 
     @cached_property
-    def _crosses(self) -> Array:
+    def _crosses(self) -> Float64Array:
         a, b, c = np.moveaxis(self.corners, 1, 0)
-        crosses: Array = np.cross(b - a, c - a)
+        crosses: Float64Array = np.cross(b - a, c - a)
         return crosses
 
     @cached_property
-    def _solid(self) -> Indices:
+    def _solid(self) -> Int64Array:
         # Faces without area have no normal and no barycentric coordinates.
         edges = self.corners - np.roll(self.corners, 1, axis=1)
         longest = np.square(edges).sum(axis=2).max(axis=1)

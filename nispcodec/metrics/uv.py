@@ -4,26 +4,29 @@ from __future__ import annotations
 
 import numpy as np
 
+from nispcodec.core.arrays import Float64Array
 from nispcodec.metrics.geometry import Matches
-from nispcodec.metrics.surface import Array, Surface, SurfacePoints
+from nispcodec.metrics.surface import Surface, SurfacePoints
 
 
-def uv_at(surface: Surface, points: SurfacePoints) -> Array:
+def uv_at(surface: Surface, points: SurfacePoints) -> Float64Array:
     """(n, 2): interpolated UVs, origin bottom-left; (0, 0) where the face has none."""
-    uvs: Array = np.einsum("nk,nkd->nd", points.weights, surface.mesh.corner_uvs[points.faces])
+    uvs: Float64Array = np.einsum(
+        "nk,nkd->nd", points.weights, surface.mesh.corner_uvs[points.faces]
+    )
     return uvs
 
 
-def uv_errors(original: Surface, decoded: Surface, matches: Matches) -> Array:
+def uv_errors(original: Surface, decoded: Surface, matches: Matches) -> Float64Array:
     """(k,): Euclidean |delta uv| of the pairs whose original face has UVs."""
     textured = original.mesh.has_uv[matches.original.faces]
     first = uv_at(original, matches.original[textured])
     second = uv_at(decoded, matches.decoded[textured])
-    errors: Array = np.linalg.norm(second - first, axis=1)
+    errors: Float64Array = np.linalg.norm(second - first, axis=1)
     return errors
 
 
-def uv_summary(errors: Array) -> dict[str, float]:
+def uv_summary(errors: Float64Array) -> dict[str, float]:
     """Mean, median and 99th percentile of (k,) UV errors."""
     return {
         "mean": float(errors.mean()),

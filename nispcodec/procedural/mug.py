@@ -6,12 +6,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from nispcodec.core.asset import FloatArray, Material, Texture, TexturedMesh, TextureMap
+from nispcodec.core.arrays import Float64Array, Int64Array
+from nispcodec.core.asset import Material, Texture, TexturedMesh, TextureMap
 from nispcodec.procedural.textures import glaze_texture, wood_textures
-
-Grid = NDArray[np.int64]
 
 SEGMENTS = 60
 GLAZE, WOOD = 0, 1
@@ -24,10 +22,10 @@ class Rectangle:
     low: tuple[float, float]
     high: tuple[float, float]
 
-    def place(self, unit: FloatArray) -> FloatArray:
+    def place(self, unit: Float64Array) -> Float64Array:
         """(..., 2) in [0, 1]^2 -> UV."""
         low = np.array(self.low)
-        placed: FloatArray = low + unit * (np.array(self.high) - low)
+        placed: Float64Array = low + unit * (np.array(self.high) - low)
         return placed
 
 
@@ -51,15 +49,15 @@ class Sheet:
     Seen from outside, columns run to the right and rows upwards.
     """
 
-    corners: Grid
-    uvs: FloatArray
+    corners: Int64Array
+    uvs: Float64Array
 
 
 @dataclass(frozen=True)
 class Body:
     """A closed surface of sheets over common positions."""
 
-    positions: FloatArray
+    positions: Float64Array
     sheets: Sequence[Sheet]
     material: int
 
@@ -149,7 +147,7 @@ def _assembled(
     )
 
 
-def _grid_triangles(rows: int, columns: int) -> Grid:
+def _grid_triangles(rows: int, columns: int) -> Int64Array:
     """Two triangles a cell, as indices into the flattened grid: (2 (r - 1) (c - 1), 3)."""
     grid = np.arange(rows * columns).reshape(rows, columns)
     a, b, c, d = grid[:-1, :-1], grid[:-1, 1:], grid[1:, 1:], grid[1:, :-1]
@@ -197,7 +195,7 @@ def _handle(rows: int, around: int) -> Body:
     return Body(np.concatenate(rings), [sheet], GLAZE)
 
 
-def _rounded(span: Span) -> FloatArray:
+def _rounded(span: Span) -> Float64Array:
     """Chaikin's corner cutting between fixed ends: (p, 2)."""
     points = np.array(span.control, dtype=np.float64)
     for _ in range(span.rounds):
@@ -207,12 +205,12 @@ def _rounded(span: Span) -> FloatArray:
     return points
 
 
-def _angles(count: int) -> FloatArray:
+def _angles(count: int) -> Float64Array:
     """Once around, the last angle equal to the first turn's end."""
     return np.linspace(0, 2 * np.pi, count + 1)
 
 
-def _ring(radius: float, height: float, angles: FloatArray) -> FloatArray:
+def _ring(radius: float, height: float, angles: Float64Array) -> Float64Array:
     """One vertex on the axis, else one an angle."""
     if radius == 0:
         return np.array([[0.0, height, 0.0]])
@@ -221,14 +219,14 @@ def _ring(radius: float, height: float, angles: FloatArray) -> FloatArray:
     )
 
 
-def _ring_corners(sizes: Sequence[int], around: int) -> Grid:
+def _ring_corners(sizes: Sequence[int], around: int) -> Int64Array:
     """(rings, around + 1) vertex indices; the last column closes each ring on its first vertex."""
     starts = np.cumsum([0, *sizes[:-1]])
     steps = np.arange(around + 1) % around
     return np.stack([start + steps % size for start, size in zip(starts, sizes, strict=True)])
 
 
-def _lathe_uvs(profile: FloatArray, angles: FloatArray) -> FloatArray:
+def _lathe_uvs(profile: Float64Array, angles: Float64Array) -> Float64Array:
     """(rows, columns, 2) in [0, 1]^2: arc length against angle, or polar around the axis."""
     steps = np.linalg.norm(np.diff(profile, axis=0), axis=1)
     along = np.concatenate([[0.0], np.cumsum(steps)]) / steps.sum()

@@ -6,11 +6,9 @@ import io
 
 import numpy as np
 import PIL.Image
-from numpy.typing import NDArray
 
+from nispcodec.core.arrays import Float64Array
 from nispcodec.core.asset import Texture
-
-Picture = NDArray[np.float64]
 
 SIZE = 512
 CREAM, COBALT, RUST = (0.93, 0.88, 0.78), (0.13, 0.24, 0.5), (0.68, 0.33, 0.18)
@@ -46,39 +44,41 @@ def wood_textures() -> tuple[Texture, Texture]:
     return _png("saucer_color.png", color), _png("saucer_normal.png", _normals(grain, 0.002))
 
 
-def _grid() -> tuple[Picture, Picture]:
+def _grid() -> tuple[Float64Array, Float64Array]:
     """u and v of the texel centres, top row first, v upwards."""
     centres = (np.arange(SIZE) + 0.5) / SIZE
     u, v = np.meshgrid(centres, centres[::-1])
     return u, v
 
 
-def _paint(picture: Picture, color: tuple[float, float, float], distance: Picture) -> Picture:
+def _paint(
+    picture: Float64Array, color: tuple[float, float, float], distance: Float64Array
+) -> Float64Array:
     """Cover where `distance` (in v) is negative, with an edge two texels wide."""
     cover = np.clip(0.5 - distance * SIZE / 4, 0, 1)[..., None]
-    painted: Picture = picture + (np.array(color) - picture) * cover
+    painted: Float64Array = picture + (np.array(color) - picture) * cover
     return painted
 
 
-def _speckle(u: Picture, v: Picture) -> Picture:
+def _speckle(u: Float64Array, v: Float64Array) -> Float64Array:
     """Smooth noise in [0, 1]: a sum of waves of random direction."""
     generator = np.random.default_rng(7)
     waves = generator.normal(0, 90, (24, 2))
     phases = generator.uniform(0, 2 * np.pi, 24)
     total = sum(np.sin(a * u + b * v + c) for (a, b), c in zip(waves, phases, strict=True))
-    noise: Picture = np.clip(0.5 + total / 12, 0, 1)
+    noise: Float64Array = np.clip(0.5 + total / 12, 0, 1)
     return noise
 
 
-def _normals(height: Picture, depth: float) -> Picture:
+def _normals(height: Float64Array, depth: float) -> Float64Array:
     """Tangent-space normals in [0, 1] of a height field `depth` high (in UV); +y is +v."""
     down, right = np.gradient(height * depth * SIZE)
     normal = np.stack([-right, down, np.ones_like(height)], axis=-1)
-    unit: Picture = normal / np.linalg.norm(normal, axis=-1, keepdims=True)
+    unit: Float64Array = normal / np.linalg.norm(normal, axis=-1, keepdims=True)
     return 0.5 + 0.5 * unit
 
 
-def _png(name: str, picture: Picture) -> Texture:
+def _png(name: str, picture: Float64Array) -> Texture:
     buffer = io.BytesIO()
     pixels = np.round(np.clip(picture, 0, 1) * 255).astype(np.uint8)
     PIL.Image.fromarray(pixels).save(buffer, "PNG")

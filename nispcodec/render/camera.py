@@ -6,11 +6,9 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
+from nispcodec.core.arrays import Float32Array, Float64Array, FloatArray
 from nispcodec.core.errors import QueryError
-
-Floats = NDArray[np.float32]
 
 NAMED = {
     "front": (0.0, 0.0),
@@ -42,7 +40,7 @@ class Camera:
     zoom: float = 1.0
 
     @cached_property
-    def axes(self) -> NDArray[np.float64]:
+    def axes(self) -> Float64Array:
         """(3, 3): right, up and backward unit vectors as rows."""
         a, e = np.radians(self.azimuth), np.radians(self.elevation)
         backward = (np.sin(a) * np.cos(e), np.sin(e), np.cos(a) * np.cos(e))
@@ -50,7 +48,7 @@ class Camera:
         return np.stack([right, np.cross(backward, right), backward])
 
     @property
-    def eye(self) -> NDArray[np.float64]:
+    def eye(self) -> Float64Array:
         """(3,): where the camera stands."""
         distance = ROOM / np.sin(np.radians(self.fov) / 2)
         return np.asarray(self.target) + distance * self.axes[2]
@@ -60,7 +58,7 @@ class Camera:
         """Half the picture's width at distance 1."""
         return float(np.tan(np.radians(self.fov) / 2)) / self.zoom
 
-    def directions(self, x: NDArray[np.floating], y: NDArray[np.floating]) -> Floats:
+    def directions(self, x: FloatArray, y: FloatArray) -> Float32Array:
         """Unit directions (n, 3) through points (n,), (n,) of the picture.
 
         (0, 0) is its top left corner, (1, 1) its bottom right.
@@ -69,7 +67,7 @@ class Camera:
         rays = np.column_stack([across, -down, -np.ones(len(x))]) @ self.axes
         return (rays / np.linalg.norm(rays, axis=1, keepdims=True)).astype(np.float32)
 
-    def places(self, points: NDArray[np.floating]) -> NDArray[np.float64]:
+    def places(self, points: FloatArray) -> Float64Array:
         """Where points (n, 3) before the camera are in the picture (n, 2): see `directions`."""
         right, up, backward = self.axes @ (points - self.eye).T
         return 0.5 + 0.5 * np.column_stack([right, -up]) / (-backward * self.reach)[:, None]

@@ -7,8 +7,9 @@ from dataclasses import replace
 import numpy as np
 from scipy.ndimage import uniform_filter
 
+from nispcodec.core.arrays import Float32Array
 from nispcodec.render.camera import Camera
-from nispcodec.render.fragments import Floats, Scene
+from nispcodec.render.fragments import Scene
 
 # A difference of this, of a channel's whole range, is black.
 SCALE = 0.25
@@ -17,21 +18,21 @@ ZOOM = 6.0
 WINDOW = 0.04
 
 
-def difference(first: Floats, second: Floats) -> Floats:
+def difference(first: Float32Array, second: Float32Array) -> Float32Array:
     """(h, w) float32: the largest difference of a channel of two pictures (h, w, 3)."""
-    largest: Floats = np.abs(first - second).max(axis=2)
+    largest: Float32Array = np.abs(first - second).max(axis=2)
     return largest
 
 
-def heat(values: Floats) -> Floats:
+def heat(values: Float32Array) -> Float32Array:
     """(..., 3) float32 for values (...): white at 0, through yellow and red to black at SCALE."""
     share = values[..., None] / SCALE
-    colors: Floats = 1 - np.clip(3 * share - np.array([2, 1, 0]), 0, 1)
+    colors: Float32Array = 1 - np.clip(3 * share - np.array([2, 1, 0]), 0, 1)
     return colors.astype(np.float32)
 
 
 def close_ups(
-    scene: Scene, views: list[Camera], differences: list[Floats], count: int
+    scene: Scene, views: list[Camera], differences: list[Float32Array], count: int
 ) -> list[Camera]:
     """Cameras on the places of largest difference, each well away from the others."""
     smooth = [uniform_filter(each, max(3, round(WINDOW * len(each)))) for each in differences]
@@ -44,14 +45,14 @@ def close_ups(
     return cameras
 
 
-def _pass_over(smooth: Floats, view: Camera, target: tuple[float, float, float]) -> None:
+def _pass_over(smooth: Float32Array, view: Camera, target: tuple[float, float, float]) -> None:
     """Forget what a close-up of the target shows, and as much around it, whatever the view."""
     middle = view.places(np.array([target]))[0, ::-1]
     low, high = (np.clip((middle + side / ZOOM) * len(smooth), 0, None) for side in (-1, 1))
     smooth[int(low[0]) : int(high[0]), int(low[1]) : int(high[1])] = 0
 
 
-def _on(scene: Scene, view: Camera, smooth: Floats) -> Camera:
+def _on(scene: Scene, view: Camera, smooth: Float32Array) -> Camera:
     """The camera turned to the brightest place, nearer by ZOOM."""
     row, column = np.unravel_index(int(smooth.argmax()), smooth.shape)
     place = (np.array([each + 0.5]) / len(smooth) for each in (column, row))

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
+from nispcodec.core.arrays import Float32Array, Int32Array, Int64Array
 from nispcodec.core.asset import Material, Texture
 from nispcodec.core.document import Frame
 from nispcodec.infer.evaluate import gradient
 from nispcodec.model import NispModel
-from nispcodec.render.fragments import Cast, Floats, Fragments, Indices, Integers
+from nispcodec.render.fragments import Cast, Fragments
 from nispcodec.render.march import March
 from nispcodec.render.space import bounding_space
 from nispcodec.render.tangents import tangent_axes
@@ -44,7 +45,7 @@ class FieldScene:
         """The document's."""
         return self.model.document.textures
 
-    def _materials_of_charts(self) -> Integers:
+    def _materials_of_charts(self) -> Int32Array:
         """(k,) int32: the material of each chart."""
         table = self.model.document.charts
         materials = table.materials.copy()
@@ -52,7 +53,7 @@ class FieldScene:
             materials[-1] = len(self.materials) - 1
         return materials
 
-    def cast(self, origins: Floats, directions: Floats, layer: int = 0) -> Cast:
+    def cast(self, origins: Float32Array, directions: Float32Array, layer: int = 0) -> Cast:
         """See `Scene.cast`."""
         sdf = self.model.document.sdf
         trace = March(sdf, self.space, origins, directions, inside=layer % 2 == 1).run()
@@ -68,7 +69,12 @@ class FieldScene:
         return Cast(fragments, trace.steps, trace.lost)
 
     def _fragments(
-        self, rays: Indices, distances: Floats, points: Floats, slopes: Floats, towards: Floats
+        self,
+        rays: Int64Array,
+        distances: Float32Array,
+        points: Float32Array,
+        slopes: Float32Array,
+        towards: Float32Array,
     ) -> Fragments:
         table = self.model.document.charts
         normals = slopes / np.maximum(np.linalg.norm(slopes, axis=1, keepdims=True), 1e-12)
@@ -86,7 +92,9 @@ class FieldScene:
             charts=charts,
         )
 
-    def _jacobians(self, points: Floats, normals: Floats, charts: Integers, uvs: Floats) -> Floats:
+    def _jacobians(
+        self, points: Float32Array, normals: Float32Array, charts: Int32Array, uvs: Float32Array
+    ) -> Float32Array:
         """(n, 2, 3): the UV network's Jacobian within the tangent plane, by two more queries."""
         jacobians = np.zeros((len(points), 2, 3), np.float32)
         for axis in tangent_axes(normals):

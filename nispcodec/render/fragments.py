@@ -5,15 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass, fields
 from typing import Protocol
 
-import numpy as np
-from numpy.typing import NDArray
-
+from nispcodec.core.arrays import BoolArray, Float32Array, Int32Array, Int64Array
 from nispcodec.core.asset import Material, Texture
 from nispcodec.core.document import Frame
-
-Floats = NDArray[np.float32]
-Integers = NDArray[np.int32]
-Indices = NDArray[np.int64]
 
 
 @dataclass(frozen=True)
@@ -31,20 +25,20 @@ class Fragments:
     charts     (n,) int32; -1 where the surface does not say
     """
 
-    rays: Indices
-    distances: Floats
-    normals: Floats
-    facing: NDArray[np.bool_]
-    uvs: Floats
-    jacobians: Floats
-    materials: Integers
-    textured: NDArray[np.bool_]
-    charts: Integers
+    rays: Int64Array
+    distances: Float32Array
+    normals: Float32Array
+    facing: BoolArray
+    uvs: Float32Array
+    jacobians: Float32Array
+    materials: Int32Array
+    textured: BoolArray
+    charts: Int32Array
 
     def __len__(self) -> int:
         return len(self.rays)
 
-    def __getitem__(self, chosen: NDArray[np.bool_]) -> Fragments:
+    def __getitem__(self, chosen: BoolArray) -> Fragments:
         return Fragments(*(getattr(self, field.name)[chosen] for field in fields(self)))
 
 
@@ -55,8 +49,8 @@ class Cast:
     """
 
     fragments: Fragments
-    steps: Integers
-    lost: NDArray[np.bool_]
+    steps: Int32Array
+    lost: BoolArray
 
 
 class Scene(Protocol):
@@ -74,7 +68,7 @@ class Scene(Protocol):
     def textures(self) -> tuple[Texture, ...]:
         """What the materials' maps index."""
 
-    def cast(self, origins: Floats, directions: Floats, layer: int) -> Cast:
+    def cast(self, origins: Float32Array, directions: Float32Array, layer: int) -> Cast:
         """Where rays (n, 3), of unit directions, first cross the surface.
 
         `layer` counts the crossings behind the origins: 0 for rays that come from the camera.

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from nispcodec.render.fragments import Floats
+from nispcodec.core.arrays import Float32Array
 
 if TYPE_CHECKING:
     import PIL.Image
@@ -17,7 +17,7 @@ SUFFIXES = (".png", ".webp", ".gif")
 TURN_SECONDS = 4.0
 
 
-def image_bytes(pictures: Sequence[Floats], suffix: str) -> bytes:
+def image_bytes(pictures: Sequence[Float32Array], suffix: str) -> bytes:
     """An image file of one of SUFFIXES: animated, one turn in TURN_SECONDS, when it is of many.
 
     Pictures are (h, w, 3) or (h, w, 4) float in [0, 1], sRGB-encoded. GIF knows no half
@@ -36,7 +36,7 @@ def image_bytes(pictures: Sequence[Floats], suffix: str) -> bytes:
     return file.getvalue()
 
 
-def _image(picture: Floats, opaque: bool) -> PIL.Image.Image:
+def _image(picture: Float32Array, opaque: bool) -> PIL.Image.Image:
     from PIL import Image
 
     if opaque and picture.shape[2] == 4:

@@ -6,20 +6,20 @@ from dataclasses import replace
 
 import numpy as np
 
+from nispcodec.core.arrays import Float32Array, Float64Array
 from nispcodec.core.asset import TexturedMesh
 from nispcodec.core.document import Frame
 from nispcodec.metrics.sides import sides_of
-from nispcodec.metrics.surface import Array, Surface, SurfacePoints
+from nispcodec.metrics.surface import Surface, SurfacePoints
 from nispcodec.metrics.uv import uv_at
 from nispcodec.model import NispModel
-from nispcodec.render.fragments import Floats
 
 POINTS = 150_000
 
 
 def layouts(
     original: TexturedMesh, decoded: NispModel | TexturedMesh, frame: Frame, size: int
-) -> tuple[Floats, Floats, Floats]:
+) -> tuple[Float32Array, Float32Array, Float32Array]:
     """The UV layouts of both (size, size, 3), and the distance between them (size, size).
 
     Of points of the original that are not hidden inside of it. A point has the colour of its
@@ -60,14 +60,16 @@ def _spread_over_uv(surface: Surface) -> SurfacePoints:
     return SurfacePoints(faces, points.weights, surface.interpolate(faces, points.weights))
 
 
-def _decoded_uvs(decoded: NispModel | TexturedMesh, frame: Frame, points: SurfacePoints) -> Array:
+def _decoded_uvs(
+    decoded: NispModel | TexturedMesh, frame: Frame, points: SurfacePoints
+) -> Float64Array:
     if isinstance(decoded, NispModel):
         return decoded.uv(frame.to_world(points.positions)).astype(np.float64)
     surface = Surface.of(decoded, frame)
     return uv_at(surface, surface.closest(points.positions))
 
 
-def _plot(places: Array, values: Array, ground: Array) -> Floats:
+def _plot(places: Float64Array, values: Float64Array, ground: Float64Array) -> Float32Array:
     """The ground (size, size, k) with values (n, k) at places (n, 2) of the unit square."""
     size = len(ground)
     cells = np.floor(places * size).astype(np.int64)

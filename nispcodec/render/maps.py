@@ -6,9 +6,10 @@ from threading import Lock
 
 import numpy as np
 
+from nispcodec.core.arrays import Float32Array
 from nispcodec.core.asset import SRGB_SLOTS, Material, Texture
-from nispcodec.core.texture import Image, decode_image, sample_texture, srgb_to_linear
-from nispcodec.render.fragments import Floats, Fragments
+from nispcodec.core.texture import decode_image, sample_texture, srgb_to_linear
+from nispcodec.render.fragments import Fragments
 
 
 class Maps:
@@ -16,12 +17,12 @@ class Maps:
 
     def __init__(self, textures: tuple[Texture, ...]) -> None:
         self._textures = textures
-        self._pyramids: dict[tuple[int, bool], list[Image]] = {}
+        self._pyramids: dict[tuple[int, bool], list[Float32Array]] = {}
         self._one_at_a_time = Lock()
 
     def look_up(
-        self, material: Material, slot: str, points: Fragments, footprints: Floats
-    ) -> Floats | None:
+        self, material: Material, slot: str, points: Fragments, footprints: Float32Array
+    ) -> Float32Array | None:
         """Texels (n, 4) float32 of a slot, linear, or None when the material has none there.
 
         `footprints` (n,) is the length in the normalised frame that one sample of the picture
@@ -36,7 +37,7 @@ class Maps:
         levels = _levels(points, footprints, pyramid[0].shape, len(pyramid))
         return _trilinear(pyramid, points.uvs, levels, used.wrap)
 
-    def _pyramid(self, texture: int, srgb: bool) -> list[Image]:
+    def _pyramid(self, texture: int, srgb: bool) -> list[Float32Array]:
         key = texture, srgb
         with self._one_at_a_time:
             if key not in self._pyramids:
@@ -47,7 +48,7 @@ class Maps:
             return self._pyramids[key]
 
 
-def _pyramid(image: Image) -> list[Image]:
+def _pyramid(image: Float32Array) -> list[Float32Array]:
     """The image and its copies, each half as large, down to one texel."""
     from PIL.Image import Resampling, fromarray
 
@@ -62,7 +63,9 @@ def _pyramid(image: Image) -> list[Image]:
     return levels
 
 
-def _levels(points: Fragments, footprints: Floats, shape: tuple[int, ...], count: int) -> Floats:
+def _levels(
+    points: Fragments, footprints: Float32Array, shape: tuple[int, ...], count: int
+) -> Float32Array:
     """At which level (n,), between the copies, a texel has the area of the footprint."""
     height, width = shape[:2]
     u, v = points.jacobians[:, 0], points.jacobians[:, 1]
@@ -70,7 +73,9 @@ def _levels(points: Fragments, footprints: Floats, shape: tuple[int, ...], count
     return np.clip(np.log2(np.maximum(stretch, 1e-12)) / 2, 0, count - 1).astype(np.float32)
 
 
-def _trilinear(pyramid: list[Image], uvs: Floats, levels: Floats, wrap: tuple[str, str]) -> Floats:
+def _trilinear(
+    pyramid: list[Float32Array], uvs: Float32Array, levels: Float32Array, wrap: tuple[str, str]
+) -> Float32Array:
     lower = np.floor(levels).astype(np.int32)
     texels = np.empty((len(uvs), pyramid[0].shape[2]), np.float32)
     for level in np.unique(lower).tolist():

@@ -10,12 +10,11 @@ from __future__ import annotations
 from dataclasses import dataclass, fields, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from nispcodec.core.arrays import BoolArray, Float32Array, Int32Array, Int64Array
 from nispcodec.core.network import Network
 from nispcodec.extract.isosurface import OUTSIDE
 from nispcodec.infer.evaluate import evaluate
-from nispcodec.render.fragments import Floats, Indices, Integers
 from nispcodec.render.space import Space
 
 EPSILON = 1e-4
@@ -35,9 +34,9 @@ BALL = OUTSIDE + 0.06
 class Trace:
     """Of n rays: distance to the hit, infinite without (n,); evaluations (n,); given up (n,)."""
 
-    distances: Floats
-    steps: Integers
-    lost: NDArray[np.bool_]
+    distances: Float32Array
+    steps: Int32Array
+    lost: BoolArray
 
 
 @dataclass(frozen=True)
@@ -46,13 +45,13 @@ class _Front:
     fast the spheres grow along the ray, -1 when it meets the surface head-on.
     """
 
-    number: Indices
-    at: Floats
-    step: Floats
-    radius: Floats
-    trend: Floats
+    number: Int64Array
+    at: Float32Array
+    step: Float32Array
+    radius: Float32Array
+    trend: Float32Array
 
-    def __getitem__(self, chosen: Indices) -> _Front:
+    def __getitem__(self, chosen: Int64Array) -> _Front:
         return _Front(*(getattr(self, field.name).take(chosen) for field in fields(self)))
 
 
@@ -63,8 +62,8 @@ class March:
         self,
         network: Network,
         space: Space,
-        origins: Floats,
-        directions: Floats,
+        origins: Float32Array,
+        directions: Float32Array,
         inside: bool = False,
     ) -> None:
         self._network, self._space = network, space
@@ -76,7 +75,7 @@ class March:
 
     def run(self) -> Trace:
         """First crossings of the surface."""
-        found: list[tuple[_Front, Floats]] = []
+        found: list[tuple[_Front, Float32Array]] = []
         lost = np.zeros(len(self._steps), np.bool_)
         front, leave = self._into_ball()
         for _ in range(MAX_STEPS):
@@ -91,7 +90,7 @@ class March:
         lost[front.number] = True
         return Trace(self._crossings(found), self._steps, lost)
 
-    def _into_ball(self) -> tuple[_Front, Floats]:
+    def _into_ball(self) -> tuple[_Front, Float32Array]:
         """The rays that meet the ball, where they enter it, and where each ray leaves it (n,)."""
         along = -(self._origins * self._directions).sum(axis=0)
         nearest = (self._origins**2).sum(axis=0) - along**2
@@ -101,7 +100,7 @@ class March:
         still = np.zeros(len(number), np.float32)
         return _Front(number, np.maximum(along - half, 0)[number], still, still, still - 1), leave
 
-    def _sphere(self, number: Indices, at: Floats) -> Floats:
+    def _sphere(self, number: Int64Array, at: Float32Array) -> Float32Array:
         """Radii in which there is no surface round points of the rays; negative beyond it."""
         points = self._points(number, at)
         radius = self._space.free(points) * self._side
@@ -110,13 +109,13 @@ class March:
         radius[asked] = self._field(points[asked])
         return radius
 
-    def _field(self, points: Floats) -> Floats:
+    def _field(self, points: Float32Array) -> Float32Array:
         return evaluate(self._network, points)[:, 0] * (self._side / np.float32(self._space.slope))
 
-    def _points(self, number: Indices, at: Floats) -> Floats:
+    def _points(self, number: Int64Array, at: Float32Array) -> Float32Array:
         return (self._origins.take(number, axis=1) + at * self._directions.take(number, axis=1)).T
 
-    def _crossings(self, found: list[tuple[_Front, Floats]]) -> Floats:
+    def _crossings(self, found: list[tuple[_Front, Float32Array]]) -> Float32Array:
         """Where the rays (n,) meet the surface: on their last point or in the step to it."""
         front = _Front(
             *(np.concatenate([getattr(each, f.name) for each, _ in found]) for f in fields(_Front))
@@ -130,7 +129,7 @@ class March:
         )
         return distances
 
-    def _bracketed(self, front: _Front, beyond: Floats) -> Floats:
+    def _bracketed(self, front: _Front, beyond: Float32Array) -> Float32Array:
         """The surface between the last two points of rays, the spheres `beyond` it negative."""
         high, low, before = front.at, front.at - front.step, front.radius
         for _ in range(REFINEMENTS):
@@ -140,11 +139,11 @@ class March:
             there = self._field(self._points(front.number, middle))
             low, before = np.where(there > 0, (middle, there), (low, before))
             high, beyond = np.where(there > 0, (high, beyond), (middle, there))
-        crossing: Floats = low + (high - low) * before / (before - beyond)
+        crossing: Float32Array = low + (high - low) * before / (before - beyond)
         return crossing
 
 
-def _within(front: _Front, leave: Floats, going: NDArray[np.bool_]) -> _Front:
+def _within(front: _Front, leave: Float32Array, going: BoolArray) -> _Front:
     """Rays still `going` whose last sphere ends before they leave, steps no longer than to there.
 
     An over-relaxed step that ends beyond may have torn; only a point that is asked can tell.
@@ -155,25 +154,25 @@ def _within(front: _Front, leave: Floats, going: NDArray[np.bool_]) -> _Front:
     return replace(front, at=start + step, step=step)[np.flatnonzero(going)]
 
 
-def _torn(front: _Front, radius: Floats) -> NDArray[np.bool_]:
+def _torn(front: _Front, radius: Float32Array) -> BoolArray:
     """Whether the spheres at both ends of the last step leave a gap between them."""
-    torn: NDArray[np.bool_] = front.step > (
+    torn: BoolArray = front.step > (
         np.maximum(front.radius, LEAST_STEP) + np.maximum(np.abs(radius), LEAST_STEP)
     )
     return torn
 
 
-def _met(front: _Front, radius: Floats) -> NDArray[np.bool_]:
+def _met(front: _Front, radius: Float32Array) -> BoolArray:
     """Whether rays are through the surface, or as good as there and still nearing it.
 
     Those that graze it are not: they might make outlines fatter.
     """
     nearing = (front.radius - radius) / np.maximum(front.step, LEAST_STEP)
-    met: NDArray[np.bool_] = radius < np.minimum(EPSILON, np.maximum(nearing * LEAST_STEP, 0))
+    met: BoolArray = radius < np.minimum(EPSILON, np.maximum(nearing * LEAST_STEP, 0))
     return met
 
 
-def _stepped(front: _Front, radius: Floats, torn: NDArray[np.bool_]) -> _Front:
+def _stepped(front: _Front, radius: Float32Array, torn: BoolArray) -> _Front:
     """One step on; back to the edge of the sphere before where the last step tore."""
     before, here = np.maximum(front.radius, LEAST_STEP), np.maximum(radius, LEAST_STEP)
     change = (radius - front.radius) / np.maximum(front.step, LEAST_STEP)

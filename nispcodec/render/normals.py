@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import numpy as np
 
-from nispcodec.metrics.surface import Array, Surface
+from nispcodec.core.arrays import Float64Array
+from nispcodec.metrics.surface import Surface
 
 # Faces that lean further than this (degrees) away from each other meet in a hard edge.
 CREASE = 45.0
 
 
-def corner_normals(surface: Surface) -> Array:
+def corner_normals(surface: Surface) -> Float64Array:
     """(m, 3, 3): a normal, not of unit length, for each corner of each face.
 
     The sum, weighted by area, of the normals of those faces at the corner's position that lean

@@ -5,12 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass, fields
 
 import numpy as np
-from numpy.typing import NDArray
 
+from nispcodec.core.arrays import BoolArray, Float32Array, FloatArray, Int32Array, Int64Array
 from nispcodec.core.texture import linear_to_srgb
 from nispcodec.infer.parallel import cores, on_every_core
 from nispcodec.render.camera import Camera
-from nispcodec.render.fragments import Floats, Fragments, Integers, Scene
+from nispcodec.render.fragments import Fragments, Scene
 from nispcodec.render.maps import Maps
 from nispcodec.render.shade import looks, shaded
 
@@ -43,13 +43,13 @@ class Samples:
     lost       (n,) bool: given up
     """
 
-    color: Floats
-    distances: Floats
-    normals: Floats
-    uvs: Floats
-    charts: Integers
-    steps: Integers
-    lost: NDArray[np.bool_]
+    color: Float32Array
+    distances: Float32Array
+    normals: Float32Array
+    uvs: Float32Array
+    charts: Int32Array
+    steps: Int32Array
+    lost: BoolArray
 
     def part(self, chosen: slice) -> Samples:
         """Some of the rays; what is written there is written here."""
@@ -78,9 +78,9 @@ class Eye:
         self.scene, self.maps, self.camera, self.size = scene, maps, camera, size
         self.normal_map = normal_map
         lamp = np.asarray(LAMP) @ camera.axes
-        self._lamp: Floats = (lamp / np.linalg.norm(lamp)).astype(np.float32)
+        self._lamp: Float32Array = (lamp / np.linalg.norm(lamp)).astype(np.float32)
 
-    def picture(self) -> Floats:
+    def picture(self) -> Float32Array:
         """(size, size, 4) float32: RGB sRGB-encoded, alpha straight; edges are antialiased."""
         first = self.pixels()
         color = first.color
@@ -98,7 +98,7 @@ class Eye:
         x, y = np.meshgrid(middle, middle)
         return self.see(x.ravel(), y.ravel())
 
-    def see(self, x: NDArray[np.floating], y: NDArray[np.floating], samples: int = 1) -> Samples:
+    def see(self, x: FloatArray, y: FloatArray, samples: int = 1) -> Samples:
         """What is seen through points (n,), (n,), in pixels from the top left.
 
         A pixel has `samples` of them along each side: textures are filtered accordingly.
@@ -113,7 +113,7 @@ class Eye:
         on_every_core(see, [slice(start, start + size) for start in range(0, len(x), size)])
         return seen
 
-    def _see(self, directions: Floats, seen: Samples, width: float) -> None:
+    def _see(self, directions: Float32Array, seen: Samples, width: float) -> None:
         """Fill in what the rays see, surface after surface from front to back."""
         eye = self.camera.eye.astype(np.float32)
         ways, gone = np.arange(len(directions)), np.zeros(len(directions), np.float32)
@@ -133,9 +133,9 @@ class Eye:
     def _lay(
         self,
         points: Fragments,
-        ways: NDArray[np.int64],
-        towards: Floats,
-        distances: Floats,
+        ways: Int64Array,
+        towards: Float32Array,
+        distances: Float32Array,
         width: float,
         seen: Samples,
     ) -> None:
@@ -154,7 +154,7 @@ class Eye:
             seen.uvs[new] = points.uvs[chosen][first]
             seen.charts[new] = points.charts[chosen][first]
 
-    def _edges(self, seen: Samples) -> NDArray[np.bool_]:
+    def _edges(self, seen: Samples) -> BoolArray:
         """Which pixels (n,) differ from one beside, above or below in what surface they show."""
         shape = (self.size, self.size)
         edges = np.zeros(shape, np.bool_)
@@ -175,7 +175,7 @@ class Eye:
         return edges.ravel()
 
 
-def _encoded(color: Floats) -> Floats:
+def _encoded(color: Float32Array) -> Float32Array:
     """Premultiplied linear light (n, 4) as sRGB with straight alpha."""
     alpha = color[:, 3:]
     straight = color[:, :3] / np.maximum(alpha, 1e-6)

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
+from nispcodec.core.arrays import Float32Array, Float64Array, Int64Array
 from nispcodec.core.asset import Material, Texture, TexturedMesh
 from nispcodec.core.document import Frame
-from nispcodec.metrics.surface import Array, Indices, Surface, SurfacePoints, frame_of
+from nispcodec.metrics.surface import Surface, SurfacePoints, frame_of
 from nispcodec.metrics.uv import uv_at
-from nispcodec.render.fragments import Cast, Floats, Fragments
+from nispcodec.render.fragments import Cast, Fragments
 from nispcodec.render.normals import corner_normals
 
 
@@ -38,7 +39,7 @@ class MeshScene:
         """The mesh's textures."""
         return self.surface.mesh.textures
 
-    def cast(self, origins: Floats, directions: Floats, layer: int = 0) -> Cast:
+    def cast(self, origins: Float32Array, directions: Float32Array, layer: int = 0) -> Cast:
         """See `Scene.cast`."""
         found = self._embree.run(origins, directions, output=True)
         rays = np.flatnonzero(found["primID"] >= 0)
@@ -49,7 +50,9 @@ class MeshScene:
         count = len(origins)
         return Cast(fragments, np.zeros(count, np.int32), np.zeros(count, np.bool_))
 
-    def _seen(self, faces: Indices, weights: Array, towards: Array) -> SurfacePoints:
+    def _seen(
+        self, faces: Int64Array, weights: Float64Array, towards: Float64Array
+    ) -> SurfacePoints:
         """The points that rays hit, of two faces back to back on the one that faces the ray."""
         seen = self.surface.facing(faces, towards)
         positions = self.surface.interpolate(faces, weights)
@@ -58,7 +61,11 @@ class MeshScene:
         return SurfacePoints(seen, weights, positions)
 
     def _fragments(
-        self, rays: Indices, distances: Floats, points: SurfacePoints, towards: Floats
+        self,
+        rays: Int64Array,
+        distances: Float32Array,
+        points: SurfacePoints,
+        towards: Float32Array,
     ) -> Fragments:
         mesh, faces = self.surface.mesh, points.faces
         normals = np.einsum("nk,nkd->nd", points.weights, self._corner_normals[faces])
@@ -76,7 +83,7 @@ class MeshScene:
         )
 
 
-def face_jacobians(surface: Surface) -> Floats:
+def face_jacobians(surface: Surface) -> Float32Array:
     """(m, 2, 3): how the UV of each face changes along x, y, z in its plane."""
     corners, uvs = surface.corners, surface.mesh.corner_uvs
     edges = corners[:, 1:] - corners[:, :1]

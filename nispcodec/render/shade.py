@@ -10,10 +10,10 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from nispcodec.core.arrays import BoolArray, Float32Array
 from nispcodec.core.asset import Material
-from nispcodec.render.fragments import Floats, Fragments
+from nispcodec.render.fragments import Fragments
 from nispcodec.render.maps import Maps
 from nispcodec.render.tangents import tangent_frames
 
@@ -28,22 +28,22 @@ SMOOTHEST = 0.1
 class Look:
     """The material at n points, linear: base (n, 3), emissive (n, 3), normals (n, 3), else (n,)."""
 
-    base: Floats
-    alpha: Floats
-    metallic: Floats
-    roughness: Floats
-    occlusion: Floats
-    emissive: Floats
-    normals: Floats
+    base: Float32Array
+    alpha: Float32Array
+    metallic: Float32Array
+    roughness: Float32Array
+    occlusion: Float32Array
+    emissive: Float32Array
+    normals: Float32Array
 
 
 def looks(
     points: Fragments,
     materials: tuple[Material, ...],
     maps: Maps,
-    footprints: Floats,
+    footprints: Float32Array,
     normal_map: bool = True,
-) -> Iterator[tuple[NDArray[np.bool_], Look]]:
+) -> Iterator[tuple[BoolArray, Look]]:
     """The points' looks, material by material: which points (n,) bool, and what they are made of.
 
     `footprints` (n,): see `Maps.look_up`. Normals point to the side from which a point is seen.
@@ -57,7 +57,7 @@ def looks(
         yield chosen, _look(points[chosen], replace(material, maps=used), maps, footprints[chosen])
 
 
-def shaded(look: Look, towards: Floats, lamp: Floats) -> Floats:
+def shaded(look: Look, towards: Float32Array, lamp: Float32Array) -> Float32Array:
     """(n, 3) linear light of points seen along unit directions (n, 3), lit from direction (3,)."""
     incident = np.clip(look.normals @ lamp, 0, 1)[:, None]
     middle = lamp - towards
@@ -69,12 +69,12 @@ def shaded(look: Look, towards: Floats, lamp: Floats) -> Floats:
     reflectance = DIELECTRIC + (look.base - DIELECTRIC) * metallic
     diffuse = look.base * (1 - metallic)
     lit = LAMP * incident * (diffuse + reflectance * gloss)
-    light: Floats = lit + ENVIRONMENT * occlusion * (diffuse + reflectance) + look.emissive
+    light: Float32Array = lit + ENVIRONMENT * occlusion * (diffuse + reflectance) + look.emissive
     return light.astype(np.float32)
 
 
-def _look(points: Fragments, material: Material, maps: Maps, footprints: Floats) -> Look:
-    def texels(slot: str) -> Floats:
+def _look(points: Fragments, material: Material, maps: Maps, footprints: Float32Array) -> Look:
+    def texels(slot: str) -> Float32Array:
         found = maps.look_up(material, slot, points, footprints)
         return np.ones((len(points), 4), np.float32) if found is None else found
 
@@ -92,7 +92,7 @@ def _look(points: Fragments, material: Material, maps: Maps, footprints: Floats)
     )
 
 
-def _alpha(alpha: Floats, material: Material) -> Floats:
+def _alpha(alpha: Float32Array, material: Material) -> Float32Array:
     if material.alpha_mode == "opaque":
         return np.ones_like(alpha)
     if material.alpha_mode == "mask":
@@ -100,7 +100,9 @@ def _alpha(alpha: Floats, material: Material) -> Floats:
     return alpha
 
 
-def _normals(points: Fragments, material: Material, maps: Maps, footprints: Floats) -> Floats:
+def _normals(
+    points: Fragments, material: Material, maps: Maps, footprints: Float32Array
+) -> Float32Array:
     """Unit normals towards the viewer, turned by the normal map; it looks alike from both sides."""
     normals = np.where(points.facing[:, None], points.normals, -points.normals)
     texels = maps.look_up(material, "normal", points, footprints)

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from nispcodec.core.arrays import Float32Array
 from nispcodec.core.asset import TexturedMesh
 from nispcodec.core.progress import Listener, Progress, silent
 from nispcodec.metrics.compare import Report, compare
@@ -14,7 +15,7 @@ from nispcodec.metrics.surface import frame_of
 from nispcodec.model import NispModel
 from nispcodec.render.camera import Camera, turntable
 from nispcodec.render.difference import SCALE, close_ups, difference, heat
-from nispcodec.render.fragments import Floats, Scene
+from nispcodec.render.fragments import Scene
 from nispcodec.render.layout import layouts
 from nispcodec.render.views import on_white, render_views, scene_of
 
@@ -28,7 +29,7 @@ BLACK, GREY = (0, 0, 0), (110, 110, 110)
 class Sheet:
     """The finished page (h, w, 3) float32 in [0, 1], and the numbers that stand on it."""
 
-    picture: Floats
+    picture: Float32Array
     report: Report
 
 
@@ -67,7 +68,7 @@ def _tell(progress: Listener, stage: int) -> None:
     progress(Progress(stage=STAGES[stage], step=stage, steps=len(STAGES)))
 
 
-def _rows(scenes: tuple[Scene, Scene], views: list[Camera], size: int) -> list[list[Floats]]:
+def _rows(scenes: tuple[Scene, Scene], views: list[Camera], size: int) -> list[list[Float32Array]]:
     """Pictures of both on white, and their differences: three rows of one a view."""
     first, second = (
         [on_white(picture) for picture in render_views(scene, views, size)] for scene in scenes
@@ -78,7 +79,7 @@ def _rows(scenes: tuple[Scene, Scene], views: list[Camera], size: int) -> list[l
 def _numbers(
     original: TexturedMesh,
     decoded: NispModel | TexturedMesh,
-    pairs: list[tuple[Floats, Floats]],
+    pairs: list[tuple[Float32Array, Float32Array]],
 ) -> Report:
     each = [compare_pictures(*pair) for pair in pairs]
     means = {name: float(np.mean([one[name] for one in each])) for name in each[0]}
@@ -104,7 +105,7 @@ def _text(report: Report) -> str:
     return "   ".join(parts)
 
 
-def _page(rows: list[list[Floats]], lines: list[str]) -> Floats:
+def _page(rows: list[list[Float32Array]], lines: list[str]) -> Float32Array:
     from PIL import Image, ImageDraw, ImageFont
 
     grid = np.concatenate([np.concatenate(row, axis=1) for row in rows], axis=0)

@@ -11,14 +11,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.ndimage import distance_transform_edt, label, map_coordinates
 
+from nispcodec.core.arrays import BoolArray, Float32Array, Int64Array
 from nispcodec.core.network import Network
 from nispcodec.extract.grid import LIMIT
 from nispcodec.extract.isosurface import OUTSIDE, extract
 from nispcodec.infer.evaluate import evaluate, gradient
-from nispcodec.render.fragments import Floats, Indices
 
 COARSE, HALVINGS = 32, 2
 SOME = 4096
@@ -40,23 +39,23 @@ class Space:
     slope  how fast the field may change near the surface: it is a distance when divided by this
     """
 
-    above: Floats
-    below: Floats
-    cells: Floats
+    above: Float32Array
+    below: Float32Array
+    cells: Float32Array
     slope: float
 
-    def free(self, points: Floats) -> Floats:
+    def free(self, points: Float32Array) -> Float32Array:
         """(n,): no surface is nearer than this to points (n, 3); negative inside; 0 if unknown."""
         count = len(self.cells)
         place = (points.T + np.float32(LIMIT)) * np.float32(count / (2 * LIMIT))
         x, y, z = np.clip(place, 0, count - 1).astype(np.int32)
-        free: Floats = self.cells.take((x * count + y) * count + z)
+        free: Float32Array = self.cells.take((x * count + y) * count + z)
         near = np.flatnonzero(np.abs(free) < 2 * LIMIT / count)
         if len(near):
             free[near] = self._interpolated(place.take(near, axis=1))
         return free
 
-    def _interpolated(self, place: Floats) -> Floats:
+    def _interpolated(self, place: Float32Array) -> Float32Array:
         free = np.maximum(_between(self.above, place), 0)
         within = np.flatnonzero(free == 0)
         if len(within):
@@ -64,8 +63,8 @@ class Space:
         return free
 
 
-def _between(grid: Floats, place: Floats) -> Floats:
-    values: Floats = map_coordinates(grid, place, output=np.float32, order=1, mode="nearest")
+def _between(grid: Float32Array, place: Float32Array) -> Float32Array:
+    values: Float32Array = map_coordinates(grid, place, output=np.float32, order=1, mode="nearest")
     return values
 
 
@@ -84,7 +83,7 @@ def bounding_space(network: Network, shell: float = 0.0) -> Space:
     return _remembered(network, cells[real], middles[real], count)
 
 
-def _remembered(network: Network, cells: Indices, middles: Floats, count: int) -> Space:
+def _remembered(network: Network, cells: Int64Array, middles: Float32Array, count: int) -> Space:
     """The field at the corners of cells that may hold surface, and distances from them."""
     slope = _slope(network, _centres(cells, count))
     shape = (count + 1,) * 3
@@ -106,7 +105,7 @@ def _remembered(network: Network, cells: Indices, middles: Floats, count: int) -
     return Space(values - doubt, values + doubt, bounds, slope)
 
 
-def _from_known(known: NDArray[np.bool_], values: Floats) -> tuple[Floats, Floats]:
+def _from_known(known: BoolArray, values: Float32Array) -> tuple[Float32Array, Float32Array]:
     """How far points of the grid are from the nearest that is known, and on which side: 1 or -1.
 
     There is no surface in between, so that both are on the same side of it.
@@ -119,14 +118,14 @@ def _from_known(known: NDArray[np.bool_], values: Floats) -> tuple[Floats, Float
     return distances, np.where(values[tuple(nearest)] < 0, np.float32(-1), np.float32(1))
 
 
-def _least_of_cells(values: Floats) -> Floats:
+def _least_of_cells(values: Float32Array) -> Float32Array:
     """The least value at the eight corners of each cell."""
     values = np.minimum(values[1:], values[:-1])
     values = np.minimum(values[:, 1:], values[:, :-1])
     return np.minimum(values[:, :, 1:], values[:, :, :-1])
 
 
-def _crossed(network: Network, cells: Indices, count: int) -> tuple[Floats, Indices]:
+def _crossed(network: Network, cells: Int64Array, count: int) -> tuple[Float32Array, Int64Array]:
     """Those cells, of `count` along an edge, that the surface may cross; the field in them."""
     centres = _centres(cells, count)
     field = evaluate(network, centres)[:, 0]
@@ -134,18 +133,18 @@ def _crossed(network: Network, cells: Indices, count: int) -> tuple[Floats, Indi
     return field[near], cells[near]
 
 
-def _slope(network: Network, points: Floats) -> float:
+def _slope(network: Network, points: Float32Array) -> float:
     """A bound on the field's slope around the points: 1 for an SDF, for a fitted one nearly."""
     some = points[:: 1 + len(points) // SOME]
     slopes = np.linalg.norm(gradient(network, some)[1], axis=1)
     return float(1.1 * np.percentile(slopes, 99)) if len(slopes) else 1.0
 
 
-def _is_surface(network: Network, shell: float, cells: Indices, count: int) -> NDArray[np.bool_]:
+def _is_surface(network: Network, shell: float, cells: Int64Array, count: int) -> BoolArray:
     """Which cells are inside the unit ball and hold no surface that is recognised as noise."""
     centres = _centres(cells, count)
     reach = 2 * LIMIT / count
-    inside: NDArray[np.bool_] = np.linalg.norm(centres, axis=1) < OUTSIDE + reach
+    inside: BoolArray = np.linalg.norm(centres, axis=1) < OUTSIDE + reach
     marked = np.zeros((count,) * 3, np.bool_)
     marked[tuple(cells[inside].T)] = True
     if label(marked, np.ones((3, 3, 3)))[1] < 2:
@@ -164,5 +163,5 @@ def _is_surface(network: Network, shell: float, cells: Indices, count: int) -> N
     return inside & (~unwanted[labels[nearest]] | (distances > 2 * reach))
 
 
-def _centres(cells: Indices, count: int) -> Floats:
+def _centres(cells: Int64Array, count: int) -> Float32Array:
     return ((cells + 0.5) * (2 * LIMIT / count) - LIMIT).astype(np.float32)

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from nispcodec.render.fragments import Floats
+from nispcodec.core.arrays import Float32Array
 
 
-def tangent_axes(normals: Floats) -> tuple[Floats, Floats]:
+def tangent_axes(normals: Float32Array) -> tuple[Float32Array, Float32Array]:
     """Two unit vectors (n, 3) each that complete the normals to a right-handed frame.
 
     Duff et al., Building an Orthonormal Basis, Revisited, 2017.
@@ -21,7 +21,9 @@ def tangent_axes(normals: Floats) -> tuple[Floats, Floats]:
     return first, second
 
 
-def tangent_frames(normals: Floats, jacobians: Floats) -> tuple[Floats, Floats]:
+def tangent_frames(
+    normals: Float32Array, jacobians: Float32Array
+) -> tuple[Float32Array, Float32Array]:
     """Tangents and bitangents (n, 3), unit, at right angles to the normals and to each other.
 
     As glTF has them (and MikkTSpace): the tangent is the direction in which u grows while v stays,

@@ -6,12 +6,13 @@ from collections.abc import Iterable
 
 import numpy as np
 
+from nispcodec.core.arrays import Float32Array
 from nispcodec.core.asset import TexturedMesh
 from nispcodec.core.document import Frame
 from nispcodec.model import NispModel
 from nispcodec.render.camera import Camera
 from nispcodec.render.field import FieldScene
-from nispcodec.render.fragments import Floats, Scene
+from nispcodec.render.fragments import Scene
 from nispcodec.render.maps import Maps
 from nispcodec.render.picture import Eye
 from nispcodec.render.raycast import MeshScene
@@ -34,7 +35,7 @@ def render_views(
     size: int = 512,
     frame: Frame | None = None,
     normal_map: bool = True,
-) -> list[Floats]:
+) -> list[Float32Array]:
     """One picture a view: (size, size, 4) float32 in [0, 1], sRGB-encoded RGB, straight alpha.
 
     Top row first; transparent where nothing is hit. `frame`: see `scene_of`.
@@ -44,8 +45,8 @@ def render_views(
     return [Eye(scene, maps, view, size, normal_map).picture() for view in views]
 
 
-def on_white(picture: Floats) -> Floats:
+def on_white(picture: Float32Array) -> Float32Array:
     """(h, w, 3): the picture on a white ground, mixed as image viewers do."""
     alpha = picture[..., 3:]
-    mixed: Floats = (picture[..., :3] * alpha + (1 - alpha)).astype(np.float32)
+    mixed: Float32Array = (picture[..., :3] * alpha + (1 - alpha)).astype(np.float32)
     return mixed

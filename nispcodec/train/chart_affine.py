@@ -3,18 +3,16 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
-from nispcodec.core.asset import FloatArray
-from nispcodec.dataset.sample_set import Floats
+from nispcodec.core.arrays import Float32Array, Float64Array, IntArray
 
 RIDGE = 1e-4
 """Variance below which a direction decides nothing: across a flat chart the samples hardly vary."""
 
 
 def affine_maps(
-    coordinates: FloatArray, charts: NDArray[np.integer], uvs: FloatArray, count: int
-) -> tuple[Floats, Floats]:
+    coordinates: Float64Array, charts: IntArray, uvs: Float64Array, count: int
+) -> tuple[Float32Array, Float32Array]:
     """Least squares for each of `count` charts, zeros for those without points.
 
     coordinates (n, d) as the network sees the points, charts (n,), uvs (n, 2) -> slopes

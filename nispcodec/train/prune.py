@@ -11,23 +11,23 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from nispcodec.core.arrays import BoolArray, Float32Array
 from nispcodec.core.errors import NispError
-from nispcodec.core.network import NetworkSpec, Weights
+from nispcodec.core.network import NetworkSpec
 
-Mask = Mapping[str, NDArray[np.bool_]]
-Strategy = Callable[[Mapping[str, Weights], Mask, float], Mask]
+Mask = Mapping[str, BoolArray]
+Strategy = Callable[[Mapping[str, Float32Array], Mask, float], Mask]
 
 NETWORKS = ("sdf", "chart", "uv")
 
 
-def smallest(weights: Mapping[str, Weights], mask: Mask, rate: float) -> Mask:
+def smallest(weights: Mapping[str, Float32Array], mask: Mask, rate: float) -> Mask:
     """Prune the smallest of each matrix."""
     return {name: _without_smallest(weights[name], kept, rate) for name, kept in mask.items()}
 
 
-def smallest_global(weights: Mapping[str, Weights], mask: Mask, rate: float) -> Mask:
+def smallest_global(weights: Mapping[str, Float32Array], mask: Mask, rate: float) -> Mask:
     """Prune the smallest of all matrices together."""
     joined = np.concatenate([weights[name].ravel() for name in mask])
     kept = np.concatenate([each.ravel() for each in mask.values()])
@@ -39,7 +39,7 @@ def smallest_global(weights: Mapping[str, Weights], mask: Mask, rate: float) -> 
     }
 
 
-def large_final(weights: Mapping[str, Weights], mask: Mask, rate: float) -> Mask:
+def large_final(weights: Mapping[str, Float32Array], mask: Mask, rate: float) -> Mask:
     """Keep the largest of each matrix; `weights` are the unpruned network's, whatever the round."""
     return smallest(weights, mask, rate)
 
@@ -102,7 +102,7 @@ def density(mask: Mask) -> float:
     return sum(int(kept.sum()) for kept in mask.values()) / sum(kept.size for kept in mask.values())
 
 
-def _without_smallest(values: Weights, mask: NDArray[np.bool_], rate: float) -> NDArray[np.bool_]:
+def _without_smallest(values: Float32Array, mask: BoolArray, rate: float) -> BoolArray:
     sizes = np.where(mask, np.abs(values), -1.0).ravel()
     kept = mask.ravel().copy()
     kept[np.argsort(sizes, kind="stable")[: int(rate * sizes.size)]] = False

@@ -13,11 +13,11 @@ from collections.abc import Sequence
 
 import numpy as np
 import torch
-from numpy.typing import NDArray
 from torch import Tensor
 from torch.func import grad, vmap
 from torch.nn import functional
 
+from nispcodec.core.arrays import Float64Array
 from nispcodec.core.errors import FitError
 from nispcodec.core.network import MAX_OCTAVE
 from nispcodec.train.backend.torch.module import Module, snapped
@@ -41,8 +41,6 @@ SIXTEENTHS = 1 / 16
 OCTAVES, CLOSE = 32.0, 1e-3
 TINY = 1e-30
 
-Doubles = NDArray[np.float64]
-
 
 def round_weights(
     module: Module, samples: Batch, rounding: Rounding, generator: torch.Generator
@@ -65,7 +63,7 @@ def round_weights(
         rise.best(places, [together * steps, (values / steps).round() * steps])
 
 
-def nearest(values: Doubles, root: Doubles) -> Doubles:
+def nearest(values: Float64Array, root: Float64Array) -> Float64Array:
     """Integers x (n,) for which |root (x - values)| is small; `root` (n, n) upper triangular."""
     lines = root / np.diag(root)[:, None]
     missing, found = np.zeros_like(values), np.zeros_like(values)
@@ -186,7 +184,9 @@ def _grid(module: Module, order: Tensor, roots: Sequence[Tensor], rounding: Roun
     return steps[module.rows]
 
 
-def shared_step(steps: Doubles, counts: Doubles, scale: float, most: int) -> tuple[float, Doubles]:
+def shared_step(
+    steps: Float64Array, counts: Float64Array, scale: float, most: int
+) -> tuple[float, Float64Array]:
     """One step for a tensor, and for each row an octave of it, in place of `steps` of their own.
 
     counts  (rows,) weights in each row: what a step that is too fine or too coarse costs them in
@@ -197,7 +197,7 @@ def shared_step(steps: Doubles, counts: Doubles, scale: float, most: int) -> tup
     wanted = np.log2(steps[counts > 0]) if counts.any() else np.zeros(1)
     first, last = float(wanted.min()), float(wanted.max())
     exponents = np.arange(first, min(last, first + MAX_OCTAVE) + SIXTEENTHS, SIXTEENTHS)
-    best: tuple[float, float, Doubles] | None = None
+    best: tuple[float, float, Float64Array] | None = None
     for step in sorted({snapped(2.0**exponent / scale) * scale for exponent in exponents.tolist()}):
         for width in range(most.bit_length() + 1 if len(steps) > 1 else 1):
             octaves = np.clip(np.rint(np.log2(steps / step)), 0, (1 << width) - 1)

@@ -6,10 +6,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 
 from benchmarks.decoder import naive
 from benchmarks.soundness import soundness
+from nispcodec.core.arrays import IntArray
 from nispcodec.core.asset import TexturedMesh
 from nispcodec.core.document import Document
 from nispcodec.extract.meshing import textured_mesh
@@ -38,7 +38,7 @@ def test_a_uv_for_each_vertex_smears_across_the_seam(document: Document) -> None
     assert soundness(document, naive(document, 24))["two_chart_triangles"] > 0
 
 
-def with_faces(mesh: TexturedMesh, chosen: NDArray[np.integer]) -> TexturedMesh:
+def with_faces(mesh: TexturedMesh, chosen: IntArray) -> TexturedMesh:
     return replace(
         mesh,
         faces=mesh.faces[chosen],

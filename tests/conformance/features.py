@@ -8,9 +8,9 @@ from io import BytesIO
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from PIL import Image
 
+from nispcodec.core.arrays import Uint8Array
 from nispcodec.core.asset import SLOTS, WRAPS, Material, Texture, TextureMap
 from nispcodec.core.document import ChartTable, Document, Frame
 from nispcodec.core.initial_weights import draws, told
@@ -87,12 +87,12 @@ def rows_apart(width: int) -> Network:
     return Network(source.spec, tensors, source.steps)
 
 
-def pixels(width: int, height: int, seed: int = 0) -> NDArray[np.uint8]:
+def pixels(width: int, height: int, seed: int = 0) -> Uint8Array:
     """A colourful RGBA image."""
     return np.random.default_rng(seed).integers(0, 256, (height, width, 4), dtype=np.uint8)
 
 
-def texture(name: str, mime: str, image: NDArray[np.uint8], **options: Any) -> Texture:
+def texture(name: str, mime: str, image: Uint8Array, **options: Any) -> Texture:
     """The image as a file of this type."""
     buffer = BytesIO()
     Image.fromarray(image).save(buffer, mime.removeprefix("image/"), **options)

@@ -11,8 +11,8 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from nispcodec.core.arrays import BoolArray, Float32Array
 from nispcodec.core.document import Frame
 from nispcodec.core.texture import decode_image
 from nispcodec.format import unpack
@@ -46,7 +46,7 @@ def answers(data: bytes) -> dict[str, Any]:
     return {name: value.tolist() for name, value in found.items()}
 
 
-def _steady(model: NispModel, points: NDArray[np.float32]) -> NDArray[np.bool_]:
+def _steady(model: NispModel, points: Float32Array) -> BoolArray:
     """(n,) bool: clear of borders of charts (or right on one, in a tie) and of texels."""
     steady = np.ones(len(points), np.bool_)
     if model.document.chart is not None:

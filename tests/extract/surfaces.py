@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
+
+from nispcodec.core.arrays import Float64Array, FloatArray, IntArray
 
 
-def assert_closed(faces: NDArray[np.integer]) -> None:
+def assert_closed(faces: IntArray) -> None:
     """Every directed edge occurs once, and once the other way round: closed, oriented, manifold."""
     starts = faces.astype(np.int64)
     edges = np.stack([starts, np.roll(starts, -1, axis=1)], axis=2).reshape(-1, 2)
@@ -17,7 +18,7 @@ def assert_closed(faces: NDArray[np.integer]) -> None:
     assert np.array_equal(np.sort(forth), np.sort(back))
 
 
-def assert_sound(positions: NDArray[np.floating], faces: NDArray[np.integer]) -> None:
+def assert_sound(positions: FloatArray, faces: IntArray) -> None:
     """Closed, no vertex twice, none unused, no empty triangle."""
     assert_closed(faces)
     assert len(np.unique(positions, axis=0)) == len(positions)
@@ -25,7 +26,7 @@ def assert_sound(positions: NDArray[np.floating], faces: NDArray[np.integer]) ->
     assert areas(positions, faces).min() > 0
 
 
-def areas(positions: NDArray[np.floating], faces: NDArray[np.integer]) -> NDArray[np.float64]:
+def areas(positions: FloatArray, faces: IntArray) -> Float64Array:
     """Area of each triangle."""
     a, b, c = positions.astype(np.float64)[faces].transpose(1, 0, 2)
     return np.linalg.norm(np.cross(b - a, c - a), axis=1) / 2

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from nispcodec.core.arrays import Float64Array
 from nispcodec.core.asset import Material, TexturedMesh
 
 CUBE_CORNERS = np.array([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)], float)
@@ -12,12 +12,12 @@ SIDES = [[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [
 CUBE_FACES = np.array([[a, *pair] for a, b, c, d in SIDES for pair in ((b, c), (c, d))])
 
 
-def cube(low: tuple[float, float, float], size: float) -> NDArray[np.float64]:
+def cube(low: tuple[float, float, float], size: float) -> Float64Array:
     """(12, 3, 3): the outward triangles of a cube."""
     return (CUBE_CORNERS * size + np.asarray(low))[CUBE_FACES]
 
 
-def hemisphere(rings: int = 12) -> NDArray[np.float64]:
+def hemisphere(rings: int = 12) -> Float64Array:
     """The upper half of the unit sphere, open below, normals outwards."""
     u = np.linspace(0, 2 * np.pi, 2 * rings + 1)
     v = np.linspace(0, np.pi / 2, rings + 1)
@@ -35,7 +35,7 @@ def hemisphere(rings: int = 12) -> NDArray[np.float64]:
     return quads[size > 1e-9]
 
 
-def soup(triangles: NDArray[np.float64], uvs: NDArray[np.float64] | None = None) -> TexturedMesh:
+def soup(triangles: Float64Array, uvs: Float64Array | None = None) -> TexturedMesh:
     """Triangles (m, 3, 3) with UVs (m, 3, 2), nothing shared by index; u, v = x, y by default."""
     indices = np.arange(3 * len(triangles), dtype=np.int32).reshape(-1, 3)
     corner_uvs = triangles[..., :2] if uvs is None else uvs

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from nispcodec.core.arrays import Float64Array
 from nispcodec.geometry.distance import LIFT, DistanceField
 from nispcodec.geometry.solid import SHELL, THIN, Solid, area, build_solid
 from tests.geometry.shapes import cube, hemisphere
@@ -14,13 +15,13 @@ CARD = np.array([[[-1, -1, 0], [1, -1, 0], [1, 1, 0]], [[-1, -1, 0], [1, 1, 0], 
 HEIGHTS = np.array([0.0, SHELL, 0.1])
 
 
-def heights_above(solid: Solid, heights: ArrayLike = HEIGHTS) -> NDArray[np.float64]:
+def heights_above(solid: Solid, heights: ArrayLike = HEIGHTS) -> Float64Array:
     """The field at some heights over a place on the card."""
     points = [[0.1, 0.05, height] for height in np.asarray(heights)]
     return DistanceField(solid).closest(np.array(points)).sdf
 
 
-def back_to_back(gap: float) -> NDArray[np.float64]:
+def back_to_back(gap: float) -> Float64Array:
     """(4, 3, 3): a card that faces up, and one below that faces down."""
     return np.concatenate([CARD + np.array([0, 0, gap]), CARD[:, ::-1]])
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 
+from nispcodec.core.arrays import Float64Array
 from nispcodec.core.asset import TexturedMesh
 from nispcodec.metrics.compare import compare
 from nispcodec.metrics.surface import Surface, frame_of
@@ -21,7 +21,7 @@ def flag(gap: float) -> TexturedMesh:
     return soup(np.concatenate([CARD + lift, CARD[:, ::-1] - lift]), uvs)
 
 
-def surface(triangles: NDArray[np.float64]) -> Surface:
+def surface(triangles: Float64Array) -> Surface:
     mesh = soup(triangles)
     return Surface.of(mesh, frame_of(mesh))
 
@@ -33,7 +33,7 @@ def test_twins_have_the_same_corners_the_other_way_round() -> None:
 
 
 @pytest.mark.parametrize("body", [cube((-1, -1, -1), 2.0), hemisphere()])
-def test_symmetric_bodies_have_none(body: NDArray[np.float64]) -> None:
+def test_symmetric_bodies_have_none(body: Float64Array) -> None:
     both = np.concatenate([body, (body * [1, 1, -1])[:, ::-1]])
     assert (surface(body).twins == -1).all()
     assert (surface(both).twins == -1).all()

@@ -10,8 +10,9 @@ import numpy as np
 import pytest
 import torch
 
+from nispcodec.core.arrays import Float32Array
 from nispcodec.core.errors import FitError, NispError
-from nispcodec.core.network import Network, NetworkSpec, Weights
+from nispcodec.core.network import Network, NetworkSpec
 from nispcodec.core.progress import Progress, silent
 from nispcodec.format import pack, unpack
 from nispcodec.train.backend.torch.losses import CURVATURES
@@ -37,7 +38,7 @@ from tests.train.test_loop import sdf_task
 SPEC = NetworkSpec((12, 7), 2, conditioning="embedding", charts=4, embedding=3)
 
 
-def weights(seed: int = 0) -> dict[str, Weights]:
+def weights(seed: int = 0) -> dict[str, Float32Array]:
     """Matrices of `SPEC`, the later the larger."""
     rng = np.random.default_rng(seed)
     scales = {name: 1.0 + 3.0 * number for number, name in enumerate(everything(SPEC))}

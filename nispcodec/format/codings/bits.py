@@ -3,15 +3,12 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from nispcodec.core.arrays import Uint8Array, Uint32Array
 from nispcodec.format.codings.reader import Reader
 
-Unsigned = NDArray[np.uint32]
-Widths = NDArray[np.uint8]
 
-
-def encode(values: Unsigned, widths: Widths) -> bytes:
+def encode(values: Uint32Array, widths: Uint8Array) -> bytes:
     """(n,) integers below 2^width, (n,) widths up to 32 -> bytes, zero bits after the last."""
     starts = np.cumsum(widths, dtype=np.int64) - widths
     bits = np.zeros(int(widths.sum(dtype=np.int64)), np.uint8)
@@ -21,7 +18,7 @@ def encode(values: Unsigned, widths: Widths) -> bytes:
     return np.packbits(bits).tobytes()
 
 
-def decode(reader: Reader, name: str, widths: Widths) -> Unsigned:
+def decode(reader: Reader, name: str, widths: Uint8Array) -> Uint32Array:
     """The inverse of `encode`; the bits after the last integer must be zero."""
     ends = np.cumsum(widths, dtype=np.int64)
     total = int(ends[-1]) if len(ends) else 0

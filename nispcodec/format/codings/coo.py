@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
-from numpy.typing import NDArray
 
+from nispcodec.core.arrays import AnyArray
 from nispcodec.format.codings import indices, numbers
 from nispcodec.format.codings.reader import Reader, varint
 
 
-def encode(values: NDArray[Any]) -> bytes:
+def encode(values: AnyArray) -> bytes:
     """(rows, columns) float32 weights or int32 symbols -> payload."""
     mask = values != 0
     rows = np.nonzero(mask)[0]
@@ -20,7 +18,7 @@ def encode(values: NDArray[Any]) -> bytes:
     return varint(len(rows)) + row_steps + gaps + numbers.encode(values[mask])
 
 
-def decode(reader: Reader, shape: tuple[int, int], symbols: bool) -> NDArray[Any]:
+def decode(reader: Reader, shape: tuple[int, int], symbols: bool) -> AnyArray:
     """Payload -> (rows, columns) float32, or int32 where `symbols`."""
     count = reader.varint("count", shape[0] * shape[1])
     rows = np.cumsum(indices.decode(reader, "row step", count, shape[0] - 1))

@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
-from numpy.typing import NDArray
 
+from nispcodec.core.arrays import AnyArray
 from nispcodec.format.codings import indices, numbers
 from nispcodec.format.codings.reader import Reader
 
 
-def encode(values: NDArray[Any]) -> bytes:
+def encode(values: AnyArray) -> bytes:
     """(rows, columns) float32 weights or int32 symbols -> payload."""
     mask = values != 0
     counts = indices.encode(indices.row_counts(mask), values.shape[1])
@@ -19,7 +17,7 @@ def encode(values: NDArray[Any]) -> bytes:
     return counts + gaps + numbers.encode(values[mask])
 
 
-def decode(reader: Reader, shape: tuple[int, int], symbols: bool) -> NDArray[Any]:
+def decode(reader: Reader, shape: tuple[int, int], symbols: bool) -> AnyArray:
     """Payload -> (rows, columns) float32, or int32 where `symbols`."""
     counts = indices.decode(reader, "row count", shape[0], shape[1])
     gaps = indices.decode(reader, "column gap", int(counts.sum()), shape[1] - 1)

@@ -10,13 +10,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from nispcodec.core.arrays import Int64Array
 from nispcodec.format.codings.rans import SCALE, SCALE_BITS
 from nispcodec.format.codings.reader import Reader
 from nispcodec.format.constants import MAX_CELLS
-
-Integers = NDArray[np.int64]
 
 _ONE_BITS = 24
 _NARROWNESSES = np.arange(32)
@@ -42,7 +40,7 @@ class Curve:
         byte = self.narrowness | self.tail << 5
         return bytes([byte | _HAS_ZEROS, self.zeros]) if self.zeros else bytes([byte])
 
-    def starts(self, cells: int) -> Integers:
+    def starts(self, cells: int) -> Int64Array:
         """(2 cells + 2,): where the frequency of each token, from -cells up, begins; the end."""
         half = frequencies(cells, np.array([self.narrowness]), self.tail, self.zeros)[0]
         both = np.concatenate([half[:0:-1], half])
@@ -64,7 +62,7 @@ def cells(limit: int) -> tuple[int, int]:
     return (limit + (1 << open_bits) - 1) >> open_bits, open_bits
 
 
-def fit(counts: Integers) -> tuple[Curve, float]:
+def fit(counts: Int64Array) -> tuple[Curve, float]:
     """(cells + 1,) how often 0 and each magnitude, of either sign -> the best curve, its bits."""
     total = int(counts.sum())
     share = min(max(round(256 * int(counts[0]) / total), 1), 255)
@@ -82,7 +80,7 @@ def fit(counts: Integers) -> tuple[Curve, float]:
     return best[1], best[0]
 
 
-def frequencies(cells: int, narrowness: Integers, tail: int, zeros: int) -> Integers:
+def frequencies(cells: int, narrowness: Int64Array, tail: int, zeros: int) -> Int64Array:
     """(n,) -> (n, cells + 1) frequencies of 0 and of each cell, either sign; with both, `SCALE`."""
     ratio = ((2 + narrowness % 2) << narrowness // 2)[:, None]
     wide = 4 * cells * cells << tail

@@ -6,16 +6,14 @@ values run from the top row down.
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
-from numpy.typing import NDArray
 
+from nispcodec.core.arrays import AnyArray, Int64Array
 from nispcodec.format.codings import indices, numbers
 from nispcodec.format.codings.reader import Reader, varint
 
 
-def encode(values: NDArray[Any]) -> bytes:
+def encode(values: AnyArray) -> bytes:
     """(rows, columns) float32 weights or int32 symbols -> payload."""
     number = _diagonals(values.shape)
     used = np.unique(number[values != 0])
@@ -24,7 +22,7 @@ def encode(values: NDArray[Any]) -> bytes:
     return varint(len(used)) + gaps + numbers.encode(values.ravel()[order])
 
 
-def decode(reader: Reader, shape: tuple[int, int], symbols: bool) -> NDArray[Any]:
+def decode(reader: Reader, shape: tuple[int, int], symbols: bool) -> AnyArray:
     """Payload -> (rows, columns) float32, or int32 where `symbols`."""
     number = _diagonals(shape)
     last = shape[0] + shape[1] - 2
@@ -38,14 +36,14 @@ def decode(reader: Reader, shape: tuple[int, int], symbols: bool) -> NDArray[Any
     return matrix
 
 
-def _diagonals(shape: tuple[int, ...]) -> NDArray[np.int64]:
+def _diagonals(shape: tuple[int, ...]) -> Int64Array:
     """(rows, columns): the number of the diagonal through each place."""
     rows, columns = np.indices(shape)
-    number: NDArray[np.int64] = columns - rows + shape[0] - 1
+    number: Int64Array = columns - rows + shape[0] - 1
     return number
 
 
-def _order(number: NDArray[np.int64], used: NDArray[np.int64]) -> NDArray[np.int64]:
+def _order(number: Int64Array, used: Int64Array) -> Int64Array:
     """Row-major places on the used diagonals, diagonal after diagonal, each from the top."""
     flat = number.ravel()
     order = np.argsort(flat, kind="stable")

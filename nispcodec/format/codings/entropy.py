@@ -8,32 +8,30 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from nispcodec.core.arrays import AnyArray, Int64Array
 from nispcodec.format.codings import bits, curve, rans, signed
 from nispcodec.format.codings.curve import Curve
-from nispcodec.format.codings.rans import Integers
 from nispcodec.format.codings.reader import Reader, varint
 from nispcodec.format.constants import MAX_SYMBOL
 
-Coded = tuple[NDArray[Any], float]
+Coded = tuple[AnyArray, float]
 """Values of a run, and the bits that an ideal coder takes for them."""
 
 
 class Run:
     """Values to write under one curve: (n,) float32 weights or int32 symbols."""
 
-    def __init__(self, values: NDArray[Any]) -> None:
+    def __init__(self, values: AnyArray) -> None:
         self._prefix, self._integers = signed.encode(values)
         self._magnitudes = np.abs(self._integers)
         self._limit = int(self._magnitudes.max())
         self._cells, self._open = curve.cells(self._limit)
 
     @cached_property
-    def _cell(self) -> Integers:
+    def _cell(self) -> Int64Array:
         return np.where(self._magnitudes > 0, (self._magnitudes - 1 >> self._open) + 1, 0)
 
     @cached_property
@@ -91,7 +89,7 @@ class Head:
         return self.count if self.limit else 0
 
     @cached_property
-    def starts(self) -> Integers:
+    def starts(self) -> Int64Array:
         """Where the tokens' frequencies begin; one token, zero, without curve."""
         if self.curve is None:
             return np.array([0, rans.SCALE])
@@ -116,13 +114,13 @@ def decode(reader: Reader, heads: list[Head]) -> list[Coded]:
     ]
 
 
-def _bits(head: Head, tokens: Integers) -> float:
+def _bits(head: Head, tokens: Int64Array) -> float:
     cells, open_bits = curve.cells(head.limit)
     shares = np.diff(head.starts)[tokens] / rans.SCALE
     return float(open_bits * np.count_nonzero(tokens != cells) - np.log2(shares).sum())
 
 
-def _values(reader: Reader, head: Head, tokens: Integers) -> NDArray[Any]:
+def _values(reader: Reader, head: Head, tokens: Int64Array) -> AnyArray:
     integers = np.zeros(head.count, np.int64)
     if head.limit:
         integers = _integers(reader, head.limit, tokens)
@@ -131,7 +129,7 @@ def _values(reader: Reader, head: Head, tokens: Integers) -> NDArray[Any]:
     return signed.decode_floats(head.kind, head.top, integers)
 
 
-def _integers(reader: Reader, limit: int, tokens: Integers) -> Integers:
+def _integers(reader: Reader, limit: int, tokens: Int64Array) -> Int64Array:
     cells, open_bits = curve.cells(limit)
     signs = np.sign(tokens - cells)
     magnitudes = np.abs(tokens - cells)

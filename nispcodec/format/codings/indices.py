@@ -9,19 +9,17 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from nispcodec.core.arrays import BoolArray, Int64Array
 from nispcodec.format.codings.reader import Reader
 
-Indices = NDArray[np.int64]
 
-
-def encode(values: Indices, maximum: int) -> bytes:
+def encode(values: Int64Array, maximum: int) -> bytes:
     """(n,) integers from 0 to `maximum` -> little-endian, 1, 2 or 4 bytes each."""
     return values.astype(_kind(maximum)).tobytes()
 
 
-def decode(reader: Reader, name: str, count: int, maximum: int) -> Indices:
+def decode(reader: Reader, name: str, count: int, maximum: int) -> Int64Array:
     """The inverse of `encode`; every integer is checked."""
     kind = _kind(maximum)
     values = np.frombuffer(reader.take(count * kind.itemsize, name), kind).astype(np.int64)
@@ -30,21 +28,21 @@ def decode(reader: Reader, name: str, count: int, maximum: int) -> Indices:
     return values
 
 
-def row_counts(mask: NDArray[np.bool_]) -> Indices:
+def row_counts(mask: BoolArray) -> Int64Array:
     """(rows, columns) bool -> (rows,) how many are set in each row."""
     return np.count_nonzero(mask, axis=1).astype(np.int64)
 
 
-def to_gaps(mask: NDArray[np.bool_]) -> Indices:
+def to_gaps(mask: BoolArray) -> Int64Array:
     """(rows, columns) bool -> (n,) the gap before each set place, row after row."""
     rows, columns = np.nonzero(mask)
     previous = np.concatenate([[-1], columns[:-1]])
     first = np.concatenate([[True], rows[1:] != rows[:-1]])[: len(rows)]
-    gaps: Indices = columns - np.where(first, -1, previous[: len(rows)]) - 1
+    gaps: Int64Array = columns - np.where(first, -1, previous[: len(rows)]) - 1
     return gaps
 
 
-def from_gaps(reader: Reader, counts: Indices, gaps: Indices, columns: int) -> Indices:
+def from_gaps(reader: Reader, counts: Int64Array, gaps: Int64Array, columns: int) -> Int64Array:
     """(rows,) counts and (n,) gaps -> (n,) columns, checked to lie inside the matrix."""
     ends = np.cumsum(gaps + 1)
     before = np.concatenate([[0], ends])[np.cumsum(counts) - counts]

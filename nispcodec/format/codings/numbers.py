@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from nispcodec.core.arrays import AnyArray
 from nispcodec.format.codings.reader import Reader
 from nispcodec.format.constants import NUMBERS
 
@@ -15,7 +15,7 @@ FLOATS: Kinds = {"float16": np.dtype("<f2"), "float32": np.dtype("<f4")}
 INTEGERS: Kinds = {"int8": np.dtype("i1"), "int16": np.dtype("<i2"), "int32": np.dtype("<i4")}
 
 
-def smallest(values: NDArray[Any]) -> str:
+def smallest(values: AnyArray) -> str:
     """The smallest kind that holds (n,) float32 or int32 values exactly."""
     kinds = FLOATS if values.dtype.kind == "f" else INTEGERS
     with np.errstate(over="ignore"):
@@ -26,14 +26,14 @@ def smallest(values: NDArray[Any]) -> str:
         )
 
 
-def encode(values: NDArray[Any]) -> bytes:
+def encode(values: AnyArray) -> bytes:
     """(n,) float32 or int32 -> bytes, in the smallest kind that loses nothing."""
     kind = smallest(values)
     stored = values.astype((FLOATS | INTEGERS)[kind])
     return bytes([1 + NUMBERS.index(kind)]) + stored.tobytes()
 
 
-def decode(reader: Reader, count: int, symbols: bool) -> NDArray[Any]:
+def decode(reader: Reader, count: int, symbols: bool) -> AnyArray:
     """Bytes -> (n,) float32, or int32 where `symbols`; only kinds of that sort are allowed."""
     kinds = INTEGERS if symbols else FLOATS
     name = reader.member("number kind", NUMBERS, tuple(kinds))

@@ -15,14 +15,13 @@ from bisect import bisect_right
 from operator import length_hint
 
 import numpy as np
-from numpy.typing import NDArray
 
+from nispcodec.core.arrays import Int64Array, IntArray, Uint16Array
 from nispcodec.format.codings.reader import Reader
 
-Integers = NDArray[np.int64]
-Runs = list[tuple[int, Integers]]
+Runs = list[tuple[int, Int64Array]]
 """How many tokens, and where each token's frequency starts: (alphabet + 1,) from 0 to `SCALE`."""
-Decoded = tuple[Integers, NDArray[np.integer], int]
+Decoded = tuple[Int64Array, IntArray, int]
 """Tokens, the last states, how many words it took."""
 
 SCALE_BITS = 14
@@ -56,7 +55,7 @@ def encode(starts: list[int], frequencies: list[int]) -> bytes:
     return np.array(words[::-1], "<u2").tobytes()
 
 
-def decode(reader: Reader, runs: Runs) -> Integers:
+def decode(reader: Reader, runs: Runs) -> Int64Array:
     """The inverse of `encode` for runs of tokens under one table: all tokens, one after another."""
     count = sum(length for length, _ in runs)
     if not count:
@@ -74,7 +73,7 @@ def decode(reader: Reader, runs: Runs) -> Integers:
     return tokens
 
 
-def _one_by_one(words: NDArray[np.uint16], runs: Runs, _: int) -> Decoded:
+def _one_by_one(words: Uint16Array, runs: Runs, _: int) -> Decoded:
     source = iter(words.tolist())
     following, mask, low = source.__next__, SCALE - 1, LOW
     tokens: list[int] = []
@@ -92,7 +91,7 @@ def _one_by_one(words: NDArray[np.uint16], runs: Runs, _: int) -> Decoded:
     return np.array(tokens), np.array([state]), len(words) - length_hint(source)
 
 
-def _side_by_side(words: NDArray[np.uint16], runs: Runs, count: int) -> Decoded:
+def _side_by_side(words: Uint16Array, runs: Runs, count: int) -> Decoded:
     """Here the tokens of all runs are numbered through, and so are their slots."""
     lengths = [length for length, _ in runs]
     firsts = np.cumsum([0] + [len(table) - 1 for _, table in runs])[:-1]

@@ -6,23 +6,19 @@ sign and top the largest pattern of its run: large weights, which are common, co
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
-from numpy.typing import NDArray
 
+from nispcodec.core.arrays import AnyArray, Float32Array, Int64Array
 from nispcodec.format.codings.numbers import FLOATS, Kinds, smallest
 from nispcodec.format.codings.reader import Reader, varint
 from nispcodec.format.constants import NUMBERS
-
-Integers = NDArray[np.int64]
 
 _PATTERNS: Kinds = {"float16": np.dtype("<u2"), "float32": np.dtype("<u4")}
 _SIGNS = {"float16": 0x8000, "float32": 0x80000000}
 _INFINITIES = {"float16": 0x7C00, "float32": 0x7F800000}
 
 
-def encode(values: NDArray[Any]) -> tuple[bytes, Integers]:
+def encode(values: AnyArray) -> tuple[bytes, Int64Array]:
     """(n,) float32 weights or int32 symbols -> what the decoder needs to know, (n,) integers."""
     if values.dtype.kind != "f":
         return b"", values.astype(np.int64)
@@ -41,9 +37,9 @@ def read_top(reader: Reader) -> tuple[str, int]:
     return kind, reader.varint("top", _INFINITIES[kind] - 1)
 
 
-def decode_floats(kind: str, top: int, integers: Integers) -> NDArray[np.float32]:
+def decode_floats(kind: str, top: int, integers: Int64Array) -> Float32Array:
     """(n,) integers of magnitudes up to `top` -> (n,) weights."""
     pattern = np.where(integers != 0, top + 1 - np.abs(integers), 0)
     stored = np.where(integers < 0, pattern | _SIGNS[kind], pattern).astype(_PATTERNS[kind])
-    values: NDArray[Any] = stored.view(FLOATS[kind])
+    values: AnyArray = stored.view(FLOATS[kind])
     return values.astype(np.float32)

@@ -6,16 +6,14 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
 
-from nispcodec.core.asset import FloatArray, TexturedMesh
+from nispcodec.core.arrays import Float64Array, Int32Array, Int64Array
+from nispcodec.core.asset import TexturedMesh
 from nispcodec.core.errors import MeshError
 from nispcodec.io.folder import Folder
 from nispcodec.io.read.gltf_buffers import Buffers, split_glb
 from nispcodec.io.read.gltf_json import Element, parse_json
 from nispcodec.io.read.gltf_materials import GltfMaterials, UvSource
-
-Indices = NDArray[np.int64]
 
 _READABLE = {
     "KHR_texture_transform",
@@ -68,7 +66,7 @@ def _things_left_out(root: Element) -> list[str]:
     return [f"{root.file}: left out {what}" for key, what in kinds.items() if root.entries(key)]
 
 
-def _instances(root: Element) -> Iterator[tuple[Element, FloatArray]]:
+def _instances(root: Element) -> Iterator[tuple[Element, Float64Array]]:
     """Each mesh of the scene with its world matrix (4, 4), depth first."""
     stack = [(index, np.eye(4)) for index in reversed(_root_nodes(root))]
     seen = set()
@@ -104,7 +102,7 @@ def _indices(owner: Element, key: str) -> list[int]:
     return values
 
 
-def _local_matrix(node: Element) -> FloatArray:
+def _local_matrix(node: Element) -> Float64Array:
     if node.get("matrix") is not None:
         flat = node.numbers("matrix", np.eye(4).reshape(-1).tolist())
         return np.array(flat).reshape(4, 4).T
@@ -115,7 +113,7 @@ def _local_matrix(node: Element) -> FloatArray:
     return matrix
 
 
-def _rotation(quaternion: FloatArray) -> FloatArray:
+def _rotation(quaternion: Float64Array) -> Float64Array:
     """(x, y, z, w) -> (3, 3); exporters round, so it need not have length one."""
     length = np.linalg.norm(quaternion)
     x, y, z, w = quaternion / (length if length > 0 else 1.0)
@@ -132,16 +130,16 @@ def _rotation(quaternion: FloatArray) -> FloatArray:
 class _Rows:
     """Rows of several arrays, each array taken once, as one table."""
 
-    arrays: list[FloatArray] = field(default_factory=list)
+    arrays: list[Float64Array] = field(default_factory=list)
     starts: dict[object, int] = field(default_factory=dict)
     count: int = 0
 
-    def add(self, key: object, rows: FloatArray) -> None:
+    def add(self, key: object, rows: Float64Array) -> None:
         self.starts[key] = self.count
         self.arrays.append(rows)
         self.count += len(rows)
 
-    def table(self, width: int) -> FloatArray:
+    def table(self, width: int) -> Float64Array:
         return np.concatenate([np.zeros((0, width)), *self.arrays])
 
 
@@ -154,12 +152,12 @@ class _Scene:
         self._warnings = warnings
         self._positions = _Rows()
         self._uvs = _Rows()
-        self._faces: list[Indices] = []
-        self._uv_faces: list[Indices] = []
-        self._face_materials: list[Indices] = []
+        self._faces: list[Int64Array] = []
+        self._uv_faces: list[Int64Array] = []
+        self._face_materials: list[Int64Array] = []
         self._count = 0
 
-    def add(self, primitive: Element, matrix: FloatArray, instance: int) -> None:
+    def add(self, primitive: Element, matrix: Float64Array, instance: int) -> None:
         """Add one primitive; `instance` numbers the matrices."""
         attributes = primitive.need("attributes")
         mode = primitive.integer("mode", _TRIANGLES)
@@ -192,7 +190,7 @@ class _Scene:
         )
 
     def _place_positions(
-        self, attributes: Element, matrix: FloatArray, instance: int
+        self, attributes: Element, matrix: Float64Array, instance: int
     ) -> tuple[int, int]:
         """First row and number of rows; primitives of an instance often share an accessor."""
         accessor = attributes.integer("POSITION")
@@ -221,7 +219,7 @@ class _Scene:
             self._uvs.add(key, np.column_stack([uvs[:, 0], 1.0 - uvs[:, 1]]))
         return self._uvs.starts[key]
 
-    def _corner_indices(self, primitive: Element, count: int) -> Indices:
+    def _corner_indices(self, primitive: Element, count: int) -> Int64Array:
         accessor = primitive.optional("indices")
         if accessor is None:
             return np.arange(count)
@@ -249,7 +247,7 @@ class _Scene:
             self._warnings.append(warning)
 
 
-def _triangles(indices: Indices, mode: int, primitive: Element) -> Indices:
+def _triangles(indices: Int64Array, mode: int, primitive: Element) -> Int64Array:
     """(n,) corner indices -> (m, 3) faces; glTF 2.0, section 3.7.2.1."""
     if mode == _TRIANGLES:
         if len(indices) % 3:
@@ -262,5 +260,5 @@ def _triangles(indices: Indices, mode: int, primitive: Element) -> Indices:
     return indices[np.stack([first, first + 1 + odd, first + 2 - odd], axis=1)]
 
 
-def _stacked(arrays: list[Indices], shape: tuple[int, ...]) -> NDArray[np.int32]:
+def _stacked(arrays: list[Int64Array], shape: tuple[int, ...]) -> Int32Array:
     return np.concatenate([np.zeros(shape, dtype=np.int64), *arrays]).astype(np.int32)

@@ -8,13 +8,11 @@ from typing import Any
 from urllib.parse import unquote, unquote_to_bytes
 
 import numpy as np
-from numpy.typing import NDArray
 
+from nispcodec.core.arrays import AnyArray, Float64Array, Int64Array
 from nispcodec.core.errors import MeshError
 from nispcodec.io.folder import Folder
 from nispcodec.io.read.gltf_json import Element
-
-Array = NDArray[Any]
 
 _COMPONENTS: dict[int, np.dtype[Any]] = {
     5120: np.dtype("i1"),
@@ -94,7 +92,7 @@ class Buffers:
             view.fail(f"an end within {len(buffer)} bytes", offset + length)
         return memoryview(buffer)[offset : offset + length]
 
-    def numbers(self, index: int, width: int) -> NDArray[np.float64]:
+    def numbers(self, index: int, width: int) -> Float64Array:
         """(n, width) float64 of an accessor; normalised integers become fractions."""
         accessor = self._root.entry("accessors", index)
         values = self._values(accessor, width)
@@ -107,7 +105,7 @@ class Buffers:
             numbers = np.maximum(numbers / np.iinfo(values.dtype).max, -1.0)
         return numbers
 
-    def indices(self, index: int) -> NDArray[np.int64]:
+    def indices(self, index: int) -> Int64Array:
         """(n,) int64 of a scalar accessor of unsigned integers."""
         accessor = self._root.entry("accessors", index)
         values = self._values(accessor, 1)
@@ -133,7 +131,7 @@ class Buffers:
             buffer.fail(f"{length} bytes", f"{len(data)} bytes")
         return data[:length]
 
-    def _values(self, accessor: Element, width: int) -> Array:
+    def _values(self, accessor: Element, width: int) -> AnyArray:
         kind = accessor.text("type", "")
         if _WIDTHS.get(kind) != width:
             accessor.fail(f"type {next(k for k, w in _WIDTHS.items() if w == width)}", kind)
@@ -141,13 +139,13 @@ class Buffers:
         if accessor.get("bufferView") is None:
             if count > _MOST_ZEROS:
                 accessor.fail(f"at most {_MOST_ZEROS} elements without a bufferView", count)
-            values: Array = np.zeros((count, width), dtype=_component(accessor))
+            values: Float64Array = np.zeros((count, width), dtype=_component(accessor))
         else:
             values = self._elements(accessor, count, _component(accessor), width)
         sparse = accessor.get("sparse")
         return values if sparse is None else self._with_sparse(values, sparse)
 
-    def _elements(self, reader: Element, count: int, dtype: np.dtype[Any], width: int) -> Array:
+    def _elements(self, reader: Element, count: int, dtype: np.dtype[Any], width: int) -> AnyArray:
         """(count, width) view of the bufferView that `reader` names, at its byteOffset."""
         index = reader.integer("bufferView")
         data, offset = self.view(index), reader.integer("byteOffset", 0)
@@ -160,7 +158,7 @@ class Buffers:
             return np.zeros((0, width), dtype=dtype)
         return np.ndarray((count, width), dtype, data, offset, (stride, dtype.itemsize))
 
-    def _with_sparse(self, base: Array, sparse: Element) -> Array:
+    def _with_sparse(self, base: AnyArray, sparse: Element) -> AnyArray:
         count = sparse.integer("count")
         indices, values = sparse.need("indices"), sparse.need("values")
         places = self._elements(indices, count, _component(indices), 1)[:, 0]

@@ -9,7 +9,8 @@ from urllib.parse import unquote
 
 import numpy as np
 
-from nispcodec.core.asset import FloatArray, Material, TextureMap
+from nispcodec.core.arrays import Float64Array
+from nispcodec.core.asset import Material, TextureMap
 from nispcodec.io.folder import Folder
 from nispcodec.io.images import TextureShelf
 from nispcodec.io.read.gltf_buffers import Buffers, read_uri
@@ -31,7 +32,7 @@ class UvSource:
     rotation: float = 0.0
     scale: tuple[float, ...] = (1.0, 1.0)
 
-    def apply(self, uvs: FloatArray) -> FloatArray:
+    def apply(self, uvs: Float64Array) -> Float64Array:
         """(n, 2) as in the file -> (n, 2) as looked up; both have their origin top-left."""
         if self.offset == (0.0, 0.0) and not self.rotation and self.scale == (1.0, 1.0):
             return uvs
@@ -39,7 +40,7 @@ class UvSource:
         # turns the other way, but its example and all known viewers follow the text.
         cosine, sine = math.cos(self.rotation), math.sin(self.rotation)
         turn = np.array([[cosine, sine], [-sine, cosine]])
-        moved: FloatArray = (uvs * self.scale) @ turn.T + self.offset
+        moved: Float64Array = (uvs * self.scale) @ turn.T + self.offset
         return moved
 
 

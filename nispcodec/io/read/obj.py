@@ -6,16 +6,14 @@ from array import array
 from collections.abc import Callable
 
 import numpy as np
-from numpy.typing import NDArray
 
-from nispcodec.core.asset import FloatArray, TexturedMesh
+from nispcodec.core.arrays import Float64Array, Int32Array, Int64Array
+from nispcodec.core.asset import TexturedMesh
 from nispcodec.core.errors import MeshError
 from nispcodec.io.folder import Folder
 from nispcodec.io.read import wavefront
 from nispcodec.io.read.obj_materials import MaterialReader
 from nispcodec.io.read.polygons import triangulate
-
-Indices = NDArray[np.int64]
 
 # Statements that carry nothing we could lose: normals, grouping, display.
 _SILENT = frozenset(
@@ -167,15 +165,15 @@ def _assemble(
     )
 
 
-def _rows(values: array[float], columns: int) -> FloatArray:
+def _rows(values: array[float], columns: int) -> Float64Array:
     return np.array(values, dtype=np.float64).reshape(-1, columns)
 
 
-def _integers(values: array[int]) -> Indices:
+def _integers(values: array[int]) -> Int64Array:
     return np.array(values, dtype=np.int64)
 
 
-def _expect_indices(statements: _Statements, indices: Indices, count: int, what: str) -> None:
+def _expect_indices(statements: _Statements, indices: Int64Array, count: int, what: str) -> None:
     if not indices.size or indices.max() < count:
         return
     corner = int(np.argmax(indices >= count))
@@ -186,7 +184,7 @@ def _expect_indices(statements: _Statements, indices: Indices, count: int, what:
     )
 
 
-def _whole_or_none(uv_faces: Indices, warnings: list[str], name: str) -> NDArray[np.int32]:
+def _whole_or_none(uv_faces: Int64Array, warnings: list[str], name: str) -> Int32Array:
     """A face with UVs in some corners only has none."""
     missing = uv_faces.min(axis=1, initial=0) < 0
     partial = int((missing & (uv_faces.max(axis=1, initial=-1) >= 0)).sum())

@@ -7,9 +7,9 @@ import struct
 from collections.abc import Iterator
 
 import numpy as np
-from numpy.typing import NDArray
 
-from nispcodec.core.asset import FloatArray, TexturedMesh
+from nispcodec.core.arrays import Float64Array, Int64Array
+from nispcodec.core.asset import TexturedMesh
 from nispcodec.core.errors import MeshError
 from nispcodec.io.folder import Folder
 from nispcodec.io.read import wavefront
@@ -51,7 +51,7 @@ def read_off(data: bytes, name: str, folder: Folder) -> TexturedMesh:
     return geometry_only(positions, indices[triangles], name)
 
 
-def geometry_only(positions: FloatArray, faces: NDArray[np.int64], name: str) -> TexturedMesh:
+def geometry_only(positions: Float64Array, faces: Int64Array, name: str) -> TexturedMesh:
     """A mesh without UVs, of one material."""
     return TexturedMesh(
         positions=positions,
@@ -63,7 +63,7 @@ def geometry_only(positions: FloatArray, faces: NDArray[np.int64], name: str) ->
     )
 
 
-def _binary_facets(data: bytes, count: int, name: str) -> tuple[FloatArray, NDArray[np.int64]]:
+def _binary_facets(data: bytes, count: int, name: str) -> tuple[Float64Array, Int64Array]:
     facet = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
     corners = np.frombuffer(data, facet, count, _STL_HEADER)["corners"]
     finite = np.isfinite(corners).all(axis=(1, 2))
@@ -75,7 +75,7 @@ def _binary_facets(data: bytes, count: int, name: str) -> tuple[FloatArray, NDAr
     return corners.reshape(-1, 3).astype(np.float64), np.arange(3 * count).reshape(-1, 3)
 
 
-def _text_facets(data: bytes, name: str) -> tuple[FloatArray, NDArray[np.int64]]:
+def _text_facets(data: bytes, name: str) -> tuple[Float64Array, Int64Array]:
     rows: list[list[float]] = []
     for number, line in wavefront.logical_lines(data):
         words = line.lower().split()

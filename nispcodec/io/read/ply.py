@@ -8,16 +8,14 @@ from dataclasses import dataclass, field
 from pathlib import PurePath
 
 import numpy as np
-from numpy.typing import NDArray
 
-from nispcodec.core.asset import FloatArray, Material, Texture, TexturedMesh, TextureMap
+from nispcodec.core.arrays import Float64Array, Int64Array
+from nispcodec.core.asset import Material, Texture, TexturedMesh, TextureMap
 from nispcodec.core.errors import MeshError
 from nispcodec.io.folder import Folder
 from nispcodec.io.images import TextureShelf
 from nispcodec.io.read import wavefront
 from nispcodec.io.read.polygons import triangulate
-
-Indices = NDArray[np.int64]
 
 _TYPES = {
     "char": "b", "int8": "b", "uchar": "B", "uint8": "B", "short": "h", "int16": "h",
@@ -220,7 +218,7 @@ def _assembled(
     )
 
 
-def _columns(vertex: Element, names: tuple[str, ...], name: str) -> FloatArray:
+def _columns(vertex: Element, names: tuple[str, ...], name: str) -> Float64Array:
     """(n, len(names)) finite numbers."""
     missing = [column for column in names if column not in vertex.columns]
     if missing and vertex.count:
@@ -236,7 +234,7 @@ def _columns(vertex: Element, names: tuple[str, ...], name: str) -> FloatArray:
     return np.ascontiguousarray(values)
 
 
-def _flat_indices(polygons: Sequence[Sequence[float]], count: int, name: str) -> Indices:
+def _flat_indices(polygons: Sequence[Sequence[float]], count: int, name: str) -> Int64Array:
     flat = np.array([index for polygon in polygons for index in polygon], dtype=np.float64)
     wrong = ~((flat >= 0) & (flat < count) & (flat == np.floor(flat)))
     if wrong.any():
@@ -250,8 +248,8 @@ def _flat_indices(polygons: Sequence[Sequence[float]], count: int, name: str) ->
 
 
 def _uvs(
-    vertex: Element, face: Element, corners: Indices, sizes: Indices, name: str
-) -> tuple[FloatArray, Indices]:
+    vertex: Element, face: Element, corners: Int64Array, sizes: Int64Array, name: str
+) -> tuple[Float64Array, Int64Array]:
     """UVs and each corner's index: the faces' own where they have them, else the vertices'."""
     listed = face.lists.get("texcoord")
     if listed is not None:
@@ -263,8 +261,8 @@ def _uvs(
 
 
 def _corner_uvs(
-    listed: Sequence[Sequence[float]], sizes: Indices, name: str
-) -> tuple[FloatArray, Indices]:
+    listed: Sequence[Sequence[float]], sizes: Int64Array, name: str
+) -> tuple[Float64Array, Int64Array]:
     """A face without as many UVs as corners must have none."""
     lengths = np.array([len(values) for values in listed], dtype=np.int64)
     wrong = (lengths != 2 * sizes) & (lengths != 0)
@@ -281,7 +279,7 @@ def _corner_uvs(
     return flat.reshape(-1, 2), np.where(has_uv, np.cumsum(has_uv) - 1, -1)
 
 
-def _face_materials(face: Element, faces: int, materials: int, name: str) -> Indices:
+def _face_materials(face: Element, faces: int, materials: int, name: str) -> Int64Array:
     """MeshLab numbers the textures; -1, no texture, counts as the first."""
     numbers = face.columns.get("texnumber")
     if numbers is None:

@@ -3,10 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
-Points = NDArray[np.float64]
-Indices = NDArray[np.int64]
+from nispcodec.core.arrays import BoolArray, Float64Array, Int64Array
 
 # Ear clipping takes quadratic time or worse; larger polygons than any modeller draws become fans.
 MAX_CLIPPED = 4096
@@ -14,7 +12,7 @@ MAX_CLIPPED = 4096
 ROUNDING = 1e-12
 
 
-def triangulate(points: Points, sizes: Indices) -> tuple[Indices, Indices]:
+def triangulate(points: Float64Array, sizes: Int64Array) -> tuple[Int64Array, Int64Array]:
     """Cut polygons into triangles that keep their orientation.
 
     points (c, 3): the corners of all polygons, one polygon after the other; sizes (p,): corners of
@@ -37,7 +35,7 @@ def triangulate(points: Points, sizes: Indices) -> tuple[Indices, Indices]:
     return np.concatenate(triangles)[order], owner[order]
 
 
-def _cut_all(polygons: Points) -> Indices:
+def _cut_all(polygons: Float64Array) -> Int64Array:
     """(g, n, 3) polygons of one size -> (g, n - 2, 3) corners of each one's triangles."""
     count, size, _ = polygons.shape
     steps = np.arange(1, size - 1)
@@ -49,14 +47,14 @@ def _cut_all(polygons: Points) -> Indices:
     return cuts
 
 
-def _newell(polygons: Points) -> Points:
+def _newell(polygons: Float64Array) -> Float64Array:
     """(..., n, 3) -> (..., 3): normals whose length is twice the area."""
     centred = polygons - polygons[..., :1, :]
-    normal: Points = np.cross(centred, np.roll(centred, -1, axis=-2)).sum(axis=-2)
+    normal: Float64Array = np.cross(centred, np.roll(centred, -1, axis=-2)).sum(axis=-2)
     return normal
 
 
-def _strictly_convex(polygons: Points) -> NDArray[np.bool_]:
+def _strictly_convex(polygons: Float64Array) -> BoolArray:
     """Whether all corners turn the same way, and once around in all."""
     edges = np.roll(polygons, -1, axis=1) - polygons
     turns = np.cross(np.roll(edges, 1, axis=1), edges)
@@ -66,11 +64,11 @@ def _strictly_convex(polygons: Points) -> NDArray[np.bool_]:
     length = np.linalg.norm(normal, axis=1, keepdims=True)
     turned = np.arctan2(sine, cosine * length).sum(axis=1)
     floor = 1e-9 * length * (edges**2).sum(axis=2).max(axis=1, keepdims=True)
-    convex: NDArray[np.bool_] = (sine > floor).all(axis=1) & (turned < 3 * np.pi)
+    convex: BoolArray = (sine > floor).all(axis=1) & (turned < 3 * np.pi)
     return convex
 
 
-def _flattened(polygon: Points) -> Points:
+def _flattened(polygon: Float64Array) -> Float64Array:
     """(n, 3) -> (n, 2): seen against the normal, so that it runs counter-clockwise."""
     normal = _newell(polygon)
     drop = int(np.abs(normal).argmax())
@@ -79,7 +77,7 @@ def _flattened(polygon: Points) -> Points:
     return flat if normal[drop] >= 0 else flat * (-1.0, 1.0)
 
 
-def _clip_ears(flat: Points) -> Indices:
+def _clip_ears(flat: Float64Array) -> Int64Array:
     """Cut ears off a counter-clockwise polygon (n, 2) until a triangle is left: (n - 2, 3)."""
     left = list(range(len(flat)))
     ears = []
@@ -90,7 +88,7 @@ def _clip_ears(flat: Points) -> Indices:
     return np.array([*ears, left], dtype=np.int64)
 
 
-def _find_ear(flat: Points, left: list[int]) -> int:
+def _find_ear(flat: Float64Array, left: list[int]) -> int:
     """The place in `left` of a corner that can go: its triangle is positive and holds no other.
 
     What remains must keep an area, or points along an edge would end in a triangle without one.
@@ -111,7 +109,9 @@ def _find_ear(flat: Points, left: list[int]) -> int:
     return int(areas.argmax())
 
 
-def _holds_any(triangle: tuple[Points, Points, Points], points: Points, floor: float) -> bool:
+def _holds_any(
+    triangle: tuple[Float64Array, Float64Array, Float64Array], points: Float64Array, floor: float
+) -> bool:
     """Whether a point other than the corners lies in the triangle or on its border."""
     a, b, c = triangle
     inside = (
@@ -123,7 +123,7 @@ def _holds_any(triangle: tuple[Points, Points, Points], points: Points, floor: f
     return bool((inside & ~corner).any())
 
 
-def _twice_area(a: Points, b: Points, c: Points) -> Points:
+def _twice_area(a: Float64Array, b: Float64Array, c: Float64Array) -> Float64Array:
     u, v = b - a, c - a
-    area: Points = u[..., 0] * v[..., 1] - u[..., 1] * v[..., 0]
+    area: Float64Array = u[..., 0] * v[..., 1] - u[..., 1] * v[..., 0]
     return area

@@ -5,16 +5,15 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from nispcodec.core.arrays import Float32Array
 from nispcodec.core.asset import Material, TexturedMesh
 from nispcodec.core.errors import MeshError
 
 # (n, 4) float32 RGBA in [0, 1], one row a position of the mesh; RGB sRGB-encoded.
-Colors = NDArray[np.float32]
 
 
-def untextured(mesh: TexturedMesh, colors: Colors) -> TexturedMesh:
+def untextured(mesh: TexturedMesh, colors: Float32Array) -> TexturedMesh:
     """The mesh with one plain material, ready to carry colours; MeshError if they do not fit."""
     if colors.shape != (len(mesh.positions), 4):
         raise MeshError(f"colors: expected shape ({len(mesh.positions)}, 4), found {colors.shape}")

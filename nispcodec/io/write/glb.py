@@ -9,11 +9,10 @@ from io import BytesIO
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from nispcodec.core.arrays import AnyArray, Float32Array, IndexArray
 from nispcodec.core.asset import Material, Texture, TexturedMesh, TextureMap
 from nispcodec.core.texture import srgb_to_linear
-from nispcodec.io.write.colors import Colors
 from nispcodec.io.write.vertices import origin, split_vertices, vertex_normals
 
 Json = dict[str, Any]
@@ -25,7 +24,7 @@ FILTERS = {"linear": (9729, 9987), "nearest": (9728, 9984)}
 WEBP = "EXT_texture_webp"
 
 
-def glb_bytes(mesh: TexturedMesh, colors: Colors | None = None) -> bytes:
+def glb_bytes(mesh: TexturedMesh, colors: Float32Array | None = None) -> bytes:
     """The mesh as the bytes of a GLB file: V is flipped to glTF's top-left origin.
 
     A mesh far from the origin gets its place from its node, not from its float32 coordinates.
@@ -37,7 +36,7 @@ def glb_bytes(mesh: TexturedMesh, colors: Colors | None = None) -> bytes:
 class _Builder:
     """Collects the JSON tree and the binary buffer that it points into."""
 
-    def __init__(self, colors: Colors | None) -> None:
+    def __init__(self, colors: Float32Array | None) -> None:
         self.colors = colors
         self.buffer = bytearray()
         self.tree: Json = {"asset": {"version": "2.0", "generator": "nispcodec"}}
@@ -79,7 +78,7 @@ class _Builder:
         self.buffer += data
         return self.add("bufferViews", view)
 
-    def accessor(self, array: NDArray[np.generic], kind: str, target: int) -> int:
+    def accessor(self, array: AnyArray, kind: str, target: int) -> int:
         accessor: Json = {
             "bufferView": self.view(array.tobytes(), target),
             "componentType": FLOAT if array.dtype == np.float32 else UINT32,
@@ -91,8 +90,8 @@ class _Builder:
     def primitive(
         self,
         mesh: TexturedMesh,
-        faces: NDArray[np.intp],
-        normals: NDArray[np.float32],
+        faces: IndexArray,
+        normals: Float32Array,
         material: int,
         has_uv: bool,
     ) -> Json:
@@ -159,7 +158,7 @@ class _Builder:
         return self.images[number]
 
 
-def _groups(mesh: TexturedMesh) -> Iterable[tuple[int, bool, NDArray[np.intp]]]:
+def _groups(mesh: TexturedMesh) -> Iterable[tuple[int, bool, IndexArray]]:
     keys = mesh.face_materials * 2 + mesh.has_uv
     for key in np.unique(keys).tolist():
         yield key // 2, bool(key % 2), np.flatnonzero(keys == key)

@@ -6,10 +6,9 @@ import math
 import re
 
 import numpy as np
-from numpy.typing import NDArray
 
+from nispcodec.core.arrays import AnyArray, Float32Array
 from nispcodec.core.asset import Material, TexturedMesh, TextureMap
-from nispcodec.io.write.colors import Colors
 
 # Occlusion and metallic-roughness share one image in glTF; MTL has no words for that.
 KEYWORDS = {
@@ -19,7 +18,9 @@ KEYWORDS = {
 }
 
 
-def obj_files(mesh: TexturedMesh, stem: str, colors: Colors | None = None) -> dict[str, bytes]:
+def obj_files(
+    mesh: TexturedMesh, stem: str, colors: Float32Array | None = None
+) -> dict[str, bytes]:
     """File name -> bytes of STEM.obj, STEM.mtl and one STEM_NAME for every texture in use.
 
     Colours (n, 4) stand behind the positions, as many tools read them, without alpha; then there
@@ -55,7 +56,7 @@ def _obj(mesh: TexturedMesh, library: str, names: list[str]) -> str:
     return "".join(parts)
 
 
-def _colored_obj(mesh: TexturedMesh, colors: Colors) -> str:
+def _colored_obj(mesh: TexturedMesh, colors: Float32Array) -> str:
     vertices = np.hstack([mesh.positions, colors[:, :3]])
     return (
         f"o {_plain(mesh.name)}\n"
@@ -70,7 +71,7 @@ def _decimals(mesh: TexturedMesh) -> str:
     return " ".join([f"%.{max(0, 7 - math.floor(math.log10(extent)))}f"] * 3)
 
 
-def _rows(pattern: str, values: NDArray[np.generic]) -> str:
+def _rows(pattern: str, values: AnyArray) -> str:
     return (pattern * len(values)) % tuple(values.ravel().tolist())
 
 

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
+from nispcodec.core.arrays import Float32Array
 from nispcodec.core.asset import TexturedMesh
-from nispcodec.io.write.colors import Colors
 from nispcodec.io.write.vertices import origin, split_vertices
 
 
-def ply_bytes(mesh: TexturedMesh, colors: Colors | None = None) -> bytes:
+def ply_bytes(mesh: TexturedMesh, colors: Float32Array | None = None) -> bytes:
     """The mesh as the bytes of a binary little-endian PLY file.
 
     A seam's vertices are doubled for their UVs s, t; colours (n, 4) become red, green, blue, alpha.

@@ -6,12 +6,12 @@ import struct
 
 import numpy as np
 
+from nispcodec.core.arrays import Float32Array
 from nispcodec.core.asset import TexturedMesh
 from nispcodec.core.errors import MeshError
-from nispcodec.io.write.colors import Colors
 
 
-def stl_bytes(mesh: TexturedMesh, colors: Colors | None = None) -> bytes:
+def stl_bytes(mesh: TexturedMesh, colors: Float32Array | None = None) -> bytes:
     """The mesh as the bytes of a binary STL file; UVs and materials are left out.
 
     Raises MeshError for colours.

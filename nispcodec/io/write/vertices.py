@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from nispcodec.core.arrays import Float32Array, Float64Array, IndexArray, Int64Array, Uint32Array
 from nispcodec.core.asset import TexturedMesh
 
 # Farther from the origin than this many times its extent, a mesh does not survive float32.
@@ -20,13 +20,13 @@ class Vertices:
     sources (n,) int64 are the vertices' indices into the mesh's positions.
     """
 
-    positions: NDArray[np.float64]
-    uvs: NDArray[np.float32]
-    faces: NDArray[np.uint32]
-    sources: NDArray[np.int64]
+    positions: Float64Array
+    uvs: Float32Array
+    faces: Uint32Array
+    sources: Int64Array
 
 
-def split_vertices(mesh: TexturedMesh, faces: NDArray[np.intp]) -> Vertices:
+def split_vertices(mesh: TexturedMesh, faces: IndexArray) -> Vertices:
     """One vertex for each pair of position and UV that `faces` (indices into mesh.faces) use."""
     pairs = mesh.faces[faces].astype(np.int64) << 32 | (mesh.uv_faces[faces].astype(np.int64) + 1)
     keys, inverse = np.unique(pairs, return_inverse=True)
@@ -40,7 +40,7 @@ def split_vertices(mesh: TexturedMesh, faces: NDArray[np.intp]) -> Vertices:
     )
 
 
-def vertex_normals(mesh: TexturedMesh) -> NDArray[np.float32]:
+def vertex_normals(mesh: TexturedMesh) -> Float32Array:
     """Area-weighted unit normals of the mesh's positions (n, 3); up where they cancel out."""
     a, b, c = mesh.corners.transpose(1, 0, 2)
     weighted = np.cross(b - a, c - a)
@@ -55,7 +55,7 @@ def vertex_normals(mesh: TexturedMesh) -> NDArray[np.float32]:
     return up.astype(np.float32)
 
 
-def origin(mesh: TexturedMesh) -> NDArray[np.float64]:
+def origin(mesh: TexturedMesh) -> Float64Array:
     """Where the zero of float32 coordinates belongs: (3,), all 0 unless the mesh is far away."""
     low, high = mesh.positions.min(axis=0), mesh.positions.max(axis=0)
     far = np.abs(mesh.positions).max() > FAR * (high - low).max()

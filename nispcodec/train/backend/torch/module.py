@@ -10,8 +10,9 @@ import torch
 from torch import Tensor
 from torch.nn import functional
 
+from nispcodec.core.arrays import Float32Array
 from nispcodec.core.initial_weights import BITS
-from nispcodec.core.network import TABLES, Network, NetworkSpec, Weights
+from nispcodec.core.network import TABLES, Network, NetworkSpec
 from nispcodec.train.backend.torch.stack import Matrices
 from nispcodec.train.chart_affine import affine_maps
 from nispcodec.train.prune import Mask
@@ -147,7 +148,7 @@ class Module:
 
     def network(self) -> Network:
         """The weights as they are now; once rounded, each a symbol times its tensor's step."""
-        tensors: dict[str, Weights] = {}
+        tensors: dict[str, Float32Array] = {}
         steps: dict[str, float] = {}
         for group, (name, values) in enumerate(self._parts(self.weights.detach()).items()):
             scale = self.scales[name]
@@ -235,7 +236,7 @@ def snapped(step: float) -> float:
     return round(mantissa * 16) / 16 * 2.0**exponent
 
 
-def _array(tensor: Tensor) -> Weights:
+def _array(tensor: Tensor) -> Float32Array:
     return np.ascontiguousarray(tensor.detach().cpu().numpy(), dtype=np.float32)
 
 
