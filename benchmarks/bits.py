@@ -30,7 +30,7 @@ Record = dict[str, float]
 def symbols_of(network: Network) -> list[Float64Array]:
     """The integers of each tensor that are written."""
     every = records.tensors("network", network)
-    return [tensor.values(tensor.octaves, True).astype(np.float64) for tensor in every]
+    return [tensor.values(tensor.row_shifts, True).astype(np.float64) for tensor in every]
 
 
 def entropy(symbols: Float64Array) -> float:

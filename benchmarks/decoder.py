@@ -133,7 +133,9 @@ def paper_queries() -> Record:
     plain = query_speed(
         random_network(NetworkSpec(wide, 1)),
         random_network(NetworkSpec(wide, charts)),
-        random_network(NetworkSpec(wide, 2, conditioning="frames", charts=charts, embedding=4)),
+        random_network(
+            NetworkSpec(wide, 2, conditioning="chart_affine", charts=charts, embedding=4)
+        ),
     )
     options: Record = {"encoding": "fourier", "levels": 5, "w0": 1.0}
     published = query_speed(

@@ -24,7 +24,7 @@ from nispcodec.infer.evaluate import evaluate
 def sparse(document: Document, resolution: int) -> dict[str, float]:
     """Seconds to the bare surface, without noise, and to the finished textured mesh."""
     started, busy = time.perf_counter(), time.process_time()
-    cells = resolution or default_resolution(document.sdf, document.shell)
+    cells = resolution or default_resolution(document.sdf, document.half_thickness)
     surface, report = without_noise(document.sdf, extract(document.sdf, cells))
     extracted = time.perf_counter() - started
     peak, worked = peak_bytes(), time.process_time() - busy

@@ -41,7 +41,7 @@ WIDTHS = {"10 kB": 38, "50 kB": 88}
 STEP = 0.0625
 PARSES, CALLS = 30, 7
 INFO: dict[str, str | int | float | bool] = {
-    "preset": "balanced", "seed": 0, "hidden_share": 0.0129, "sheet_share": 0.0,
+    "preset": "balanced", "seed": 0, "hidden_share": 0.0129, "open_surface_share": 0.0,
     "distance_error": 4.25e-4, "chart_accuracy": 0.992,
     "uv_error_median": 2.47e-4, "uv_error_mean": 1.45e-3,
 }  # fmt: skip
@@ -59,7 +59,7 @@ def targets(name: str) -> list[Target]:
 
 def made(width: int) -> bytes:
     """A file like an encoder's, of networks of four hidden layers of this width."""
-    uv = NetworkSpec((width,) * 4, 2, conditioning="frames", charts=CHARTS, embedding=4)
+    uv = NetworkSpec((width,) * 4, 2, conditioning="chart_affine", charts=CHARTS, embedding=4)
     image = BytesIO()
     Image.new("RGB", (8, 8), "tan").save(image, "PNG")
     document = Document(

@@ -74,7 +74,7 @@ def networks(path: Path, steps: int) -> dict[str, Task]:
     sampler = Sampler(load_mesh(path), SAMPLER_SEED, GAP)
     sets, charts = training_sets(sampler), len(sampler.table)
     sdf = NetworkSpec((32,) * 4, 1)
-    uv = NetworkSpec((24,) * 3, 2, conditioning="frames", charts=charts, embedding=4)
+    uv = NetworkSpec((24,) * 3, 2, conditioning="chart_affine", charts=charts, embedding=4)
     distance, skin = (sets.distance, sets.held_distance), (sets.textured, sets.held_skin)
     schedule = Schedule(steps, BATCH)
     return {

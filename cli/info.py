@@ -48,7 +48,7 @@ def describe(document: Document, data: bytes) -> dict[str, Any]:
             "radius": document.frame.radius,
         },
         "charts": len(document.charts),
-        "shell": document.shell,
+        "half_thickness": document.half_thickness,
         "networks": {name: _network(each) for name, each in document.networks.items()},
         "materials": [_material(each) for each in document.materials],
         "textures": [
@@ -115,8 +115,8 @@ def _network(network: Network) -> dict[str, Any]:
         facts["conditioning"] = spec.conditioning
     if spec.mirror:
         facts["mirror"] = "".join(compress("xyz", spec.mirrored))
-    if spec.sided:
-        facts["sided"] = "".join("xyz"[axis] for axis in spec.sided)
+    if spec.signed_axes:
+        facts["signed_axes"] = "".join("xyz"[axis] for axis in spec.signed_axes)
     return facts
 
 

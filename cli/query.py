@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING
 
 import click
 
-from nispcodec.core.arrays import AnyArray, Float64Array
-
 from .files import output_option
 
 if TYPE_CHECKING:
+    from nispcodec.core.arrays import AnyArray, Float64Array
+
     Answers = dict[str, AnyArray]
 
 COLUMNS = "x,y,z,sdf,chart,u,v,red,green,blue,alpha"

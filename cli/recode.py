@@ -14,7 +14,7 @@ from .report import print_group, rate
 if TYPE_CHECKING:
     from nispcodec.core.document import Document
 
-CODINGS = ("dense", "coo", "csc", "csr", "dia", "entropy", "drawn")
+CODINGS = ("dense", "coo", "csc", "csr", "dia", "entropy", "delta_init")
 IMAGE_FORMATS = ("webp", "avif", "jpeg")
 
 

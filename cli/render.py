@@ -7,14 +7,13 @@ from typing import TYPE_CHECKING
 
 import click
 
-from nispcodec.core.arrays import Float32Array
-
 from .files import output_option
 from .progress import encode_progress
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
+    from nispcodec.core.arrays import Float32Array
     from nispcodec.render.camera import Camera
 
 CHANNELS = ("color", "normal", "uv", "chart", "depth", "sdf-steps")

@@ -53,8 +53,8 @@ class Document:
     """One decoded container.
 
     sdf is always there; chart only when there are two charts or more; uv only when some chart has
-    UV. `shell` is the half thickness (normalised frame) given to open sheets, 0 when there are
-    none: then the surface has parts as thin as twice this.
+    UV. `half_thickness` (normalised frame) is given to open surfaces, 0 when there are none;
+    with it the surface has parts as thin as twice this.
     `info` holds what was measured and how the file was made: plain str, int, float and bool values.
     `extra` holds the ancillary sections that this version does not know, by four-character code:
     they are kept when the document is written again.
@@ -67,7 +67,7 @@ class Document:
     sdf: Network
     chart: Network | None = None
     uv: Network | None = None
-    shell: float = 0.0
+    half_thickness: float = 0.0
     info: Mapping[str, str | int | float | bool] = field(default_factory=dict)
     extra: Mapping[str, bytes] = field(default_factory=dict)
 

@@ -1,4 +1,4 @@
-"""The numbers that networks start from: the same for who writes a file and for who reads it.
+"""The numbers that training starts from: the same for who writes a file and for who reads it.
 
 Trained weights are near where they began, those of the first layer and of UVs above all: what a
 file has to say of them is how far they went.
@@ -11,25 +11,29 @@ import numpy as np
 from nispcodec.core.arrays import Int64Array, Uint64Array
 
 BITS = 23
-"""Draws are integers from -2^BITS to below 2^BITS."""
+"""Initial weights are integers from -2^BITS to below 2^BITS, which stand for [-1, 1)."""
 
 _GAMMA = np.uint64(0x9E3779B97F4A7C15)
 
 
-def draws(number: int, first: int, count: int) -> Int64Array:
-    """(count,) the draws of this number from the place `first` on.
+def initial_integers(seed: int, first: int, count: int) -> Int64Array:
+    """(count,) int64 initial weights of a network with this seed, from its weight `first` on.
 
     SplitMix64 (Steele, Lea, Flood, "Fast splittable pseudorandom number generators", 2014).
     """
-    start = _mixed(np.array([number], np.uint64))
+    start = _mixed(np.array([seed], np.uint64))
     places = np.arange(first + 1, first + count + 1, dtype=np.uint64)
     found = _mixed(start + places * _GAMMA) >> np.uint64(63 - BITS)
     return found.astype(np.int64) - (1 << BITS)
 
 
-def told(drawn: Int64Array, reach: int, octaves: Int64Array) -> Int64Array:
-    """What draws let expect of symbols: `reach` times the draw in [-1, 1), in steps of 2^octave."""
-    return (reach * drawn + (1 << BITS - 1 + octaves)) >> BITS + octaves
+def predicted(initial: Int64Array, scale: int, row_shifts: Int64Array) -> Int64Array:
+    """Symbols as initial weights predict them: `scale` times each in [-1, 1), over 2^row_shift.
+
+    initial (...,) as `initial_integers` gives them; row_shifts (...,) or one for all -> (...,)
+    int64, halves rounded up.
+    """
+    return (scale * initial + (1 << BITS - 1 + row_shifts)) >> BITS + row_shifts
 
 
 def _mixed(state: Uint64Array) -> Uint64Array:

@@ -15,10 +15,10 @@ import numpy as np
 
 from nispcodec.core.arrays import Float32Array, Int64Array
 from nispcodec.core.errors import FormatError
-from nispcodec.core.initial_weights import draws
+from nispcodec.core.initial_weights import initial_integers
 
 ENCODINGS = ("identity", "fourier")
-CONDITIONINGS = ("none", "scalar", "embedding", "frames")
+CONDITIONINGS = ("none", "scalar", "embedding", "chart_affine")
 TABLES = ("embedding", "slopes", "offsets")
 """Tensors with a row for each chart."""
 ACTIVATIONS = ("sine", "relu")
@@ -27,8 +27,8 @@ OUTPUTS = ("identity", "tanh", "sigmoid")
 MAX_WIDTH = 1024
 MAX_HIDDEN_LAYERS = 32
 MAX_CHARTS = 65_535
-MAX_DRAW = 2**32 - 1
-MAX_OCTAVE = 7
+MAX_INIT_SEED = 2**32 - 1
+MAX_ROW_SHIFT = 7
 
 
 @dataclass(frozen=True)
@@ -39,16 +39,16 @@ class NetworkSpec:
                  i = 0 ... levels-1 (paper, eq. 7), coordinate after coordinate
     conditioning how the chart number c of `charts` enters: "none"; "scalar": (2c + 1) / charts - 1
                  is a fourth coordinate, encoded like the others; "embedding": row c of a table of
-                 `embedding` numbers a chart is appended to the encoded point; "frames": that, and
-                 an affine map of the coordinates, row c of `slopes` and `offsets`, is added to
-                 what the last layer gives
+                 `embedding` numbers a chart is appended to the encoded point; "chart_affine":
+                 that, and an affine map of the coordinates, row c of `slopes` and `offsets`, is
+                 added to what the last layer gives
     hidden       widths of the hidden layers
     activation   "sine": sin(w0 (W x + b)); "relu": max(0, W x + b)
     output       activation of the last layer
     mirror       bit 0, 1, 2: of x, y, z the absolute value enters, before any encoding, so that the
                  network holds one half and its answers are symmetric about the plane; bit 3, 4, 5:
                  x, y, z itself follows as a further coordinate, for what differs on the two sides
-    draw         number of the draws (`nispcodec.core.initial_weights`) that training starts from
+    init_seed    seed of the initial weights (`nispcodec.core.initial_weights`)
     """
 
     hidden: tuple[int, ...]
@@ -62,7 +62,7 @@ class NetworkSpec:
     w0: float = 30.0
     output: str = "identity"
     mirror: int = 0
-    draw: int = 0
+    init_seed: int = 0
 
     def __post_init__(self) -> None:
         _member("encoding", self.encoding, ENCODINGS)
@@ -76,12 +76,12 @@ class NetworkSpec:
         fourier, conditioned = self.encoding == "fourier", self.conditioning != "none"
         _within("levels", self.levels, int(fourier), 16 if fourier else 0)
         _within("charts", self.charts, int(conditioned), MAX_CHARTS if conditioned else 0)
-        embedded = self.conditioning in ("embedding", "frames")
+        embedded = self.conditioning in ("embedding", "chart_affine")
         _within("embedding", self.embedding, int(embedded), 64 if embedded else 0)
         if not 0 < self.w0 <= 1000:
             raise FormatError("network", "w0", "a number in (0, 1000]", self.w0)
         _within("mirror", self.mirror, 0, 63)
-        _within("draw", self.draw, 0, MAX_DRAW)
+        _within("init_seed", self.init_seed, 0, MAX_INIT_SEED)
         if self.mirror >> 3 & ~self.mirror:
             expected = "bits 3, 4, 5 only beside bits 0, 1, 2"
             raise FormatError("network", "mirror", expected, self.mirror)
@@ -92,14 +92,14 @@ class NetworkSpec:
         return bool(self.mirror & 1), bool(self.mirror & 2), bool(self.mirror & 4)
 
     @property
-    def sided(self) -> tuple[int, ...]:
+    def signed_axes(self) -> tuple[int, ...]:
         """The axes of which the coordinate itself follows its absolute value."""
         return tuple(axis for axis in range(3) if self.mirror >> 3 + axis & 1)
 
     @property
     def coordinates(self) -> int:
         """How many coordinates of the point enter, before encoding."""
-        return 3 + len(self.sided)
+        return 3 + len(self.signed_axes)
 
     @property
     def inputs(self) -> int:
@@ -115,7 +115,7 @@ class NetworkSpec:
         shapes: dict[str, tuple[int, ...]] = {}
         if self.embedding:
             shapes["embedding"] = (self.charts, self.embedding)
-        if self.conditioning == "frames":
+        if self.conditioning == "chart_affine":
             shapes["slopes"] = (self.charts, self.outputs * self.coordinates)
             shapes["offsets"] = (self.charts, self.outputs)
         for layer, (fan_in, fan_out) in enumerate(pairwise(widths)):
@@ -123,16 +123,17 @@ class NetworkSpec:
             shapes[f"bias.{layer}"] = (fan_out,)
         return shapes
 
-    def drawn(self, names: Iterable[str]) -> dict[str, Int64Array]:
-        """The draws that each of these tensors begins from, in its shape."""
+    def initial_integers(self, names: Iterable[str]) -> dict[str, Int64Array]:
+        """The initial weights of each of these tensors, as integers, in its shape."""
         shapes, first = self.shapes, 0
         places: dict[str, int] = {}
         for name, shape in shapes.items():
             places[name] = first
             first += math.prod(shape)
+        counts = {name: math.prod(shapes[name]) for name in names}
         return {
-            name: draws(self.draw, places[name], math.prod(shapes[name])).reshape(shapes[name])
-            for name in names
+            name: initial_integers(self.init_seed, places[name], count).reshape(shapes[name])
+            for name, count in counts.items()
         }
 
     @property

@@ -112,7 +112,7 @@ def encode(
             sdf=networks["sdf"],
             chart=networks.get("chart"),
             uv=networks.get("uv"),
-            shell=_shell(sampler),
+            half_thickness=_shell(sampler),
         )
 
     done = document(_fit(sampler, sets, config, document, progress))
@@ -203,7 +203,7 @@ def _single(values: Sequence[float], limit: float) -> list[float]:
 def _shell(sampler: Sampler) -> float:
     from nispcodec.geometry.solid import SHELL
 
-    return SHELL if sampler.solid.sheet_share >= NOTABLE_SHEETS else 0.0
+    return SHELL if sampler.solid.open_surface_share >= NOTABLE_SHEETS else 0.0
 
 
 def _measured(
@@ -219,7 +219,7 @@ def _measured(
         "preset": config.preset,
         "seed": config.seed,
         "hidden_share": _short(sampler.solid.hidden_share),
-        "sheet_share": _short(sampler.solid.sheet_share),
+        "open_surface_share": _short(sampler.solid.open_surface_share),
         "distance_error": _short(distance.mean()),
     }
     charts = model.charts(skin.points, frame="normalised")

@@ -56,13 +56,13 @@ def textured_mesh(
     return replace(mesh, warnings=report.warnings), report
 
 
-def default_resolution(network: Network, shell: float) -> int:
+def default_resolution(network: Network, half_thickness: float) -> int:
     """256; for thin walls up to 512, as triangles allow; one cell for sheets' half thickness."""
     points, size = near_surface(network, LEAST)
     thin = thin_share(network, points, size, 2 * LIMIT / LEAST)
     affordable = int(LEAST * np.sqrt(FACES / (FACES_A_BLOCK * max(len(points), 1))))
     cells = min(max(LEAST, affordable), MOST) if thin > THIN else LEAST
-    sheets = int(np.ceil(2 * LIMIT / shell)) if shell else 0
+    sheets = int(np.ceil(2 * LIMIT / half_thickness)) if half_thickness else 0
     return min(max(cells, sheets), MAX_RESOLUTION)
 
 
@@ -70,7 +70,7 @@ def _surface(
     document: Document, resolution: int | None, error: float | None, keep_spurious: bool
 ) -> tuple[Surface, ExtractionReport]:
     """The surface at the resolution asked for, or at one that is fine enough for `error`."""
-    cells = resolution or default_resolution(document.sdf, document.shell)
+    cells = resolution or default_resolution(document.sdf, document.half_thickness)
     while True:
         surface, report = without_noise(document.sdf, extract(document.sdf, cells), keep_spurious)
         given = resolution is not None or error is None or 2 * cells > MAX_RESOLUTION

@@ -21,12 +21,12 @@ TXTR = "TXTR"
 SECTIONS = (META, NETS, TXTR)
 
 NETWORKS = ("sdf", "chart", "uv")
-CODINGS = ("dense", "coo", "csc", "csr", "dia", "entropy", "drawn")
+CODINGS = ("dense", "coo", "csc", "csr", "dia", "entropy", "delta_init")
 MEASURES = (
     "preset",
     "seed",
     "hidden_share",
-    "sheet_share",
+    "open_surface_share",
     "distance_error",
     "chart_accuracy",
     "uv_error_median",

@@ -87,7 +87,7 @@ def _parse(data: bytes) -> tuple[Document, dict[str, Entry], dict[str, int]]:
             sdf=networks["sdf"],
             chart=networks.get("chart"),
             uv=networks.get("uv"),
-            shell=meta.shell,
+            half_thickness=meta.half_thickness,
             info=meta.info,
             extra={code: bytes(content(entry)) for code, entry in unknown.items()},
         )

@@ -33,7 +33,7 @@ class Metadata:
     materials: tuple[Material, ...]
     textures: tuple[tuple[str, str, int | None], ...]
     specs: dict[str, NetworkSpec]
-    shell: float
+    half_thickness: float
     info: Mapping[str, measures.Scalar]
 
 
@@ -50,7 +50,7 @@ def encode(document: Document) -> bytes:
         6: ([float(x) for x in (*table.uv_offset, *table.uv_scale)], list(_UV_MAP)),
         7: ([encode_material(material) for material in document.materials], [{}]),
         8: (encode_textures(document.textures), []),
-        9: (float(document.shell), 0.0),
+        9: (float(document.half_thickness), 0.0),
         10: (measures.encode(document.info), {}),
         11: (table.openings, False),
     }
@@ -73,7 +73,7 @@ def decode(data: bytes | memoryview) -> Metadata:
         materials=materials,
         textures=decode_textures(record.take(8, "textures", list, [])),
         specs=topology.decode(networks, count),
-        shell=record.take(9, "shell", float, 0.0),
+        half_thickness=record.take(9, "half_thickness", float, 0.0),
         info=measures.decode(record.take(10, "info", dict, {})),
     )
     record.finish()

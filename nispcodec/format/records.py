@@ -11,7 +11,7 @@ import numpy as np
 
 from nispcodec.core.arrays import AnyArray, Float32Array, Int32Array, Int64Array
 from nispcodec.core.errors import FormatError
-from nispcodec.core.initial_weights import told
+from nispcodec.core.initial_weights import predicted
 from nispcodec.core.network import Network, NetworkSpec
 from nispcodec.format import steps
 from nispcodec.format.codings import coo, csc, csr, dense, dia, entropy
@@ -28,7 +28,7 @@ from nispcodec.format.container import pack_content
 from nispcodec.format.tensor import Tensor
 
 _OWN = {"dense": dense, "coo": coo, "csc": csc, "csr": csr, "dia": dia}
-STREAMED = ("entropy", "drawn")
+STREAMED = ("entropy", "delta_init")
 _NONE = [np.zeros(1, np.int64)]
 
 
@@ -36,7 +36,7 @@ _NONE = [np.zeros(1, np.int64)]
 class Record:
     """Tensors to write together; `before` is the step of the tensor before them.
 
-    Rows have octaves of `width` bits, none where that is 0.
+    Rows have row shifts of `width` bits, none where that is 0.
     """
 
     coding: str
@@ -45,34 +45,34 @@ class Record:
     width: int
 
     @cached_property
-    def run(self) -> entropy.Run | None:
+    def run(self) -> entropy.SymbolRun | None:
         """What goes to the stream, if anything does."""
         if self.coding not in STREAMED:
             return None
-        return entropy.Run(np.concatenate([each.ravel() for each in self._values]))
+        return entropy.SymbolRun(np.concatenate([each.ravel() for each in self._values]))
 
     def encode(self) -> bytes:
-        """Tag, step, octaves, and the payload, or the reaches and the run's head."""
+        """Tag, step, row shifts, and the payload, or the initial scales and the run's header."""
         first, form, step = self.tensors[0], 0, b""
         if first.step is not None:
-            octaves = np.concatenate(self._octaves)
-            name, step = steps.encode(first.path, first.step, self.before, octaves, self.width)
+            row_shifts = np.concatenate(self._row_shifts)
+            name, step = steps.encode(first.path, first.step, self.before, row_shifts, self.width)
             form = 1 + STEPS.index(name)
         tag = 1 + CODINGS.index(self.coding) | form << 3 | len(self.tensors) - 1 << 6
         if not self.run:
             return bytes([tag]) + step + _OWN[self.coding].encode(self._values[0])
-        drawn = self.tensors if self.coding == "drawn" else []
-        reaches = b"".join(varint(tensor.reach) for tensor in drawn)
-        return bytes([tag]) + step + reaches + self.run.head()
+        scaled = self.tensors if self.coding == "delta_init" else []
+        scales = b"".join(varint(tensor.init_scale) for tensor in scaled)
+        return bytes([tag]) + step + scales + self.run.header()
 
     @property
-    def _octaves(self) -> list[Int64Array]:
-        return [np.minimum(tensor.octaves, (1 << self.width) - 1) for tensor in self.tensors]
+    def _row_shifts(self) -> list[Int64Array]:
+        return [np.minimum(tensor.row_shifts, (1 << self.width) - 1) for tensor in self.tensors]
 
     @property
     def _values(self) -> list[AnyArray]:
-        pairs = zip(self.tensors, self._octaves, strict=True)
-        return [tensor.values(octaves, self.coding == "drawn") for tensor, octaves in pairs]
+        pairs, delta = zip(self.tensors, self._row_shifts, strict=True), self.coding == "delta_init"
+        return [tensor.values(row_shifts, delta) for tensor, row_shifts in pairs]
 
     @cached_property
     def size(self) -> float:
@@ -85,17 +85,17 @@ class Record:
 
 @dataclass(frozen=True)
 class Part:
-    """A record that was read: the tensors it is of, their step, their values or the run's head.
+    """A record that was read: the tensors it is of, their step, their values or the run's header.
 
-    Symbols are what is read, plus what is `expected`, times two to the power of `octaves`; either
-    for each weight or for all.
+    Symbols are what is read, plus what is `expected`, times two to the power of `row_shifts`;
+    either for each weight or for all.
     """
 
     names: list[str]
     step: float | None
     values: AnyArray | None
-    head: entropy.Head | None
-    octaves: Int64Array
+    header: entropy.RunHeader | None
+    row_shifts: Int64Array
     expected: Int64Array
 
 
@@ -120,9 +120,9 @@ def candidates(name: str, network: Network) -> list[Candidate]:
 def _records(run: list[Tensor], before: float | None) -> Iterator[Record]:
     """Every record of these tensors."""
     codings = list(_OWN) if len(run) == 1 else []
-    codings += STREAMED if any(tensor.reach for tensor in run) else STREAMED[:1]
-    widest = max(int(tensor.octaves.max()) for tensor in run).bit_length()
-    rows = run[0].step is not None and steps.has_octaves(run[0].step)
+    codings += STREAMED if any(tensor.init_scale for tensor in run) else STREAMED[:1]
+    widest = max(int(tensor.row_shifts.max()) for tensor in run).bit_length()
+    rows = run[0].step is not None and steps.has_row_shifts(run[0].step)
     for width in {0, widest if rows else 0}:
         yield from (Record(coding, run, before, width) for coding in codings)
 
@@ -143,13 +143,13 @@ def tensors(name: str, network: Network) -> list[Tensor]:
 
     Raises `FormatError` for weights that are not multiples of their step.
     """
-    found, drawn = [], network.spec.drawn(network.tensors)
+    found, initial = [], network.spec.initial_integers(network.tensors)
     for key, tensor in network.tensors.items():
         path, step = f"{name}.{key}", network.steps.get(key)
         # Adding 0 makes -0 a 0.
         values = tensor + np.float32(0) if step is None else _symbols(path, tensor, step)
         shape = _matrix_shape(tensor.shape)
-        found.append(Tensor(path, step, values.reshape(shape), drawn[key].reshape(shape)))
+        found.append(Tensor(path, step, values.reshape(shape), initial[key].reshape(shape)))
     return found
 
 
@@ -171,40 +171,41 @@ def _read(reader: Reader, left: list[str], spec: NetworkSpec, before: float | No
     if not 1 <= number <= len(CODINGS):
         raise reader.error("coding", f"1 to {len(CODINGS)}", number)
     coding = CODINGS[number - 1]
-    if coding == "drawn" and not form:
-        raise reader.error("step", f"1 to {len(STEPS)} with drawn", form)
+    if coding == "delta_init" and not form:
+        raise reader.error("step", f"1 to {len(STEPS)} with delta_init", form)
     most = len(left) - 1 if coding in STREAMED else 0
     if joined > most:
         raise reader.error("joined", f"at most {most} more tensors", joined)
     step = steps.decode(reader, STEPS[form - 1], before) if form else None
     names = left[: 1 + joined]
     shapes = [_matrix_shape(spec.shapes[name]) for name in names]
-    every = _octaves(reader, STEPS[form - 1], shapes) if form else _NONE
-    octaves = np.concatenate([each.ravel() for each in every])
+    every = _row_shifts(reader, STEPS[form - 1], shapes) if form else _NONE
+    row_shifts = np.concatenate([each.ravel() for each in every])
     if coding not in STREAMED:
         values = _OWN[coding].decode(reader, shapes[0], step is not None).ravel()
-        return Part(names, step, values, None, octaves, _NONE[0])
-    expected = _expected(reader, spec.drawn(names), every) if coding == "drawn" else _NONE[0]
+        return Part(names, step, values, None, row_shifts, _NONE[0])
+    delta = coding == "delta_init"
+    expected = _expected(reader, spec.initial_integers(names), every) if delta else _NONE[0]
     count = sum(math.prod(shape) for shape in shapes)
-    head = entropy.read_head(reader, count, step is not None)
-    return Part(names, step, None, head, octaves, expected)
+    header = entropy.read_header(reader, count, step is not None)
+    return Part(names, step, None, header, row_shifts, expected)
 
 
-def _octaves(reader: Reader, form: str, shapes: list[tuple[int, int]]) -> list[Int64Array]:
+def _row_shifts(reader: Reader, form: str, shapes: list[tuple[int, int]]) -> list[Int64Array]:
     """(rows, columns) those of every weight of some tensors."""
     rows = [shape[0] for shape in shapes]
-    found = np.split(steps.decode_octaves(reader, form, sum(rows)), np.cumsum(rows)[:-1])
+    found = np.split(steps.decode_row_shifts(reader, form, sum(rows)), np.cumsum(rows)[:-1])
     pairs = zip(found, shapes, strict=True)
-    return [np.broadcast_to(octaves[:, None], shape) for octaves, shape in pairs]
+    return [np.broadcast_to(row_shifts[:, None], shape) for row_shifts, shape in pairs]
 
 
 def _expected(
-    reader: Reader, drawn: dict[str, Int64Array], octaves: list[Int64Array]
+    reader: Reader, initial: dict[str, Int64Array], row_shifts: list[Int64Array]
 ) -> Int64Array:
-    """What draws tell of the symbols of some tensors."""
-    reaches = [reader.varint("reach", MAX_SYMBOL) for _ in drawn]
-    every = zip(drawn.values(), reaches, octaves, strict=True)
-    parts = [told(draw.reshape(each.shape), reach, each) for draw, reach, each in every]
+    """The symbols of some tensors as their initial weights predict them."""
+    scales = [reader.varint("init_scale", MAX_SYMBOL) for _ in initial]
+    every = zip(initial.values(), scales, row_shifts, strict=True)
+    parts = [predicted(each.reshape(by.shape), scale, by) for each, scale, by in every]
     return np.concatenate([part.ravel() for part in parts])
 
 

@@ -1,6 +1,6 @@
 """A quantisation step in the fewest bytes: none if as before, one byte, float16 or float32.
 
-Where rows matter more or less, symbols of a row are multiples of a power of two: its octave.
+Where rows matter more or less, symbols of a row are multiples of a power of two: its row shift.
 """
 
 from __future__ import annotations
@@ -20,25 +20,25 @@ _BYTE = {(8 + byte % 8) * 2.0 ** (byte // 8 - 30): byte for byte in range(256)}
 _VALUES = list(_BYTE)
 
 
-def has_octaves(step: float) -> bool:
-    """Whether rows may have octaves beside this step."""
+def has_row_shifts(step: float) -> bool:
+    """Whether rows may have row shifts beside this step."""
     return float(np.float32(step)) in _BYTE
 
 
 def encode(
-    path: str, step: float, before: float | None, octaves: IntArray, width: int
+    path: str, step: float, before: float | None, row_shifts: IntArray, width: int
 ) -> tuple[str, bytes]:
     """Form and bytes of a step; `before` is that of the record before, if it has one.
 
-    octaves  (rows,) in `width` bits each, where that is not 0
+    row_shifts  (rows,) in `width` bits each, where that is not 0
     """
     single = float(np.float32(step))
     if not 0 < single < np.inf:
         raise FormatError(NETS, f"{path}.step", "a positive float32", step)
     if width:
-        widths = np.full(len(octaves), width, np.uint8)
+        widths = np.full(len(row_shifts), width, np.uint8)
         return f"rows{width}", bytes([_BYTE[single]]) + bits.encode(
-            octaves.astype(np.uint32), widths
+            row_shifts.astype(np.uint32), widths
         )
     if before is not None and single == float(np.float32(before)):
         return "same", b""
@@ -49,16 +49,16 @@ def encode(
     return form, struct.pack(_FORMATS[form], single)
 
 
-def decode_octaves(reader: Reader, form: str, rows: int) -> Int64Array:
-    """(rows,) the octaves that follow a step; none are 0."""
+def decode_row_shifts(reader: Reader, form: str, rows: int) -> Int64Array:
+    """(rows,) the row shifts that follow a step; none are 0."""
     if not form.startswith("rows"):
         return np.zeros(rows, np.int64)
     widths = np.full(rows, int(form.removeprefix("rows")), np.uint8)
-    return bits.decode(reader, "octaves", widths).astype(np.int64)
+    return bits.decode(reader, "row_shifts", widths).astype(np.int64)
 
 
 def decode(reader: Reader, form: str, before: float | None) -> float:
-    """The inverse of `encode`, but for octaves."""
+    """The inverse of `encode`, but for row shifts."""
     if form == "same":
         if before is None:
             raise reader.error("step", "a step in the record before", "none")

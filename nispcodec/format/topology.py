@@ -44,7 +44,7 @@ def _fields(path: str, spec: NetworkSpec) -> dict[int, Any]:
             7: (float(spec.w0), 30.0),
             8: (number(META, f"{path}.output", spec.output, OUTPUTS), 1),
             9: (spec.mirror, 0),
-            10: (spec.draw, 0),
+            10: (spec.init_seed, 0),
         }
     )
 
@@ -63,7 +63,7 @@ def _read(record: Record, name: str, charts: int) -> NetworkSpec:
     w0 = record.take(7, "w0", float, 30.0)
     output = record.member(8, "output", OUTPUTS)
     mirror = record.take(9, "mirror", int, 0)
-    draw = record.take(10, "draw", int, 0)
+    init_seed = record.take(10, "init_seed", int, 0)
     with located(META, record.path):
         spec = NetworkSpec(
             hidden=tuple(hidden),
@@ -77,7 +77,7 @@ def _read(record: Record, name: str, charts: int) -> NetworkSpec:
             w0=w0,
             output=output,
             mirror=mirror,
-            draw=draw,
+            init_seed=init_seed,
         )
     record.finish()
     return spec

@@ -27,8 +27,8 @@ def encode(networks: dict[str, Network], coding: str | None) -> bytes:
     # The section is packed as a whole, so that the best for each tensor may not be the best of all.
     choices = [*((name,) for name in own), streamed, own, CODINGS]
     if coding:
-        # Weights that are no symbols, and those that draws tell nothing of, cannot be drawn.
-        choices = [streamed if coding == "drawn" else (coding,)]
+        # Weights that are no symbols, or that nothing predicts, cannot be differences.
+        choices = [streamed if coding == "delta_init" else (coding,)]
     sections = (
         _section([record for each in prepared for record in records.cheapest(each, choice)])
         for choice in choices
@@ -50,8 +50,8 @@ def decode(
     for name, spec in specs.items():
         read[name] = records.read(reader, name, spec)
         ends.append(reader.position)
-    heads = [part.head for parts in read.values() for part in parts if part.head]
-    coded = iter(entropy.decode(reader, heads))
+    headers = [part.header for parts in read.values() for part in parts if part.header]
+    coded = iter(entropy.decode(reader, headers))
     reader.finish()
     networks, bits = {}, [0.0]
     for name, spec in specs.items():
@@ -67,7 +67,7 @@ def decode(
 def _values(part: Part, coded: Iterator[entropy.Coded]) -> entropy.Coded:
     """Weights or symbols of a record, and the bits that they take in the stream."""
     values, bits = next(coded) if part.values is None else (part.values, 0.0)
-    return values if part.step is None else values + part.expected << part.octaves, bits
+    return values if part.step is None else values + part.expected << part.row_shifts, bits
 
 
 def _section(chosen: list[Record]) -> bytes:

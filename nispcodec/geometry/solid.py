@@ -57,7 +57,7 @@ class Solid:
     sheet   (p,) bool: pieces that get a thickness
     wall    (p,) bool: pieces with an inside; a sheet that is one too has two faces back to back
     winding of the closed or nearly closed bodies: where it is beyond 1/2 is inside
-    hidden_share, sheet_share: of the mesh's area
+    hidden_share, open_surface_share: of the mesh's area
     """
 
     pieces: Float64Array
@@ -66,7 +66,7 @@ class Solid:
     wall: BoolArray
     winding: Winding
     hidden_share: float
-    sheet_share: float
+    open_surface_share: float
 
 
 def build_solid(corners: Float64Array) -> Solid:
@@ -89,7 +89,7 @@ def build_solid(corners: Float64Array) -> Solid:
         wall=kinds != _SHEET,
         winding=winding,
         hidden_share=float(area(pieces[hidden]).sum() / total),
-        sheet_share=float(area(all_pieces[sheet]).sum() / total),
+        open_surface_share=float(area(all_pieces[sheet]).sum() / total),
     )
 
 

@@ -106,7 +106,7 @@ class _Forward:
         if self.spec.embedding:
             self.embedding = np.ascontiguousarray(network.tensors["embedding"].T)
         self.frames: Float32Array | None = None
-        if self.spec.conditioning == "frames":
+        if self.spec.conditioning == "chart_affine":
             self.frames = _frames(network)
         self.mirrored = np.array(self.spec.mirrored)[:, None]
         self._own = local()
@@ -183,7 +183,7 @@ class _Forward:
         if not self.spec.mirror:
             return coordinates
         folded = np.where(self.mirrored, np.abs(coordinates), coordinates)
-        return np.vstack([folded, coordinates[list(self.spec.sided)]])
+        return np.vstack([folded, coordinates[list(self.spec.signed_axes)]])
 
     def _through_encoding(self, encoded: Float32Array, slope: Float32Array) -> Float32Array:
         if self.spec.encoding == "identity":
@@ -196,7 +196,7 @@ class _Forward:
 
     def _through_mirror(self, coordinates: Float32Array, slope: Float32Array) -> Float32Array:
         folded = np.where(self.mirrored, slope[:3] * np.sign(coordinates), slope[:3])
-        folded[list(self.spec.sided)] += slope[3:]
+        folded[list(self.spec.signed_axes)] += slope[3:]
         return folded
 
     @property

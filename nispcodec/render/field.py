@@ -27,7 +27,7 @@ class FieldScene:
 
     def __init__(self, model: NispModel) -> None:
         self.model = model
-        self.space = bounding_space(model.document.sdf, model.document.shell)
+        self.space = bounding_space(model.document.sdf, model.document.half_thickness)
         self._chart_materials = self._materials_of_charts()
 
     @property

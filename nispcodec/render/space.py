@@ -68,18 +68,18 @@ def _between(grid: Float32Array, place: Float32Array) -> Float32Array:
     return values
 
 
-def bounding_space(network: Network, shell: float = 0.0) -> Space:
+def bounding_space(network: Network, half_thickness: float = 0.0) -> Space:
     """What can be known beforehand of where the surface of an SDF network is not.
 
-    `shell` is the document's. Noise is what the mesh of a plain decode has none of: on coarser ones
-    thin parts break into pieces that look like noise.
+    `half_thickness` is the document's. Noise is what the mesh of a plain decode has none of: on
+    coarser ones thin parts break into pieces that look like noise.
     """
     cells, count = np.indices((COARSE,) * 3).reshape(3, -1).T, COARSE
     middles, cells = _crossed(network, cells, count)
     for _ in range(HALVINGS):
         count *= 2
         middles, cells = _crossed(network, (2 * cells[:, None] + HALVES).reshape(-1, 3), count)
-    real = _is_surface(network, shell, cells, count)
+    real = _is_surface(network, half_thickness, cells, count)
     return _remembered(network, cells[real], middles[real], count)
 
 
@@ -140,7 +140,9 @@ def _slope(network: Network, points: Float32Array) -> float:
     return float(1.1 * np.percentile(slopes, 99)) if len(slopes) else 1.0
 
 
-def _is_surface(network: Network, shell: float, cells: Int64Array, count: int) -> BoolArray:
+def _is_surface(
+    network: Network, half_thickness: float, cells: Int64Array, count: int
+) -> BoolArray:
     """Which cells are inside the unit ball and hold no surface that is recognised as noise."""
     centres = _centres(cells, count)
     reach = 2 * LIMIT / count
@@ -155,7 +157,7 @@ def _is_surface(network: Network, shell: float, cells: Int64Array, count: int) -
     from nispcodec.extract.components import spurious
     from nispcodec.extract.meshing import default_resolution
 
-    surface = extract(network, default_resolution(network, shell))
+    surface = extract(network, default_resolution(network, half_thickness))
     unwanted, labels = spurious(network, surface)
     if not unwanted.any():
         return inside

@@ -12,7 +12,7 @@ import torch
 from torch import Tensor
 
 from nispcodec.core.errors import FitError
-from nispcodec.core.network import MAX_DRAW, Network
+from nispcodec.core.network import MAX_INIT_SEED, Network
 from nispcodec.core.progress import Listener, Progress
 from nispcodec.dataset.hard_examples import reaches
 from nispcodec.train.backend.torch.module import Module
@@ -76,11 +76,11 @@ class _Run:
         self.task = task
         self.listen = listen
         self.generator = torch.Generator().manual_seed(seed)
-        spec = replace(task.spec, draw=seed % (MAX_DRAW + 1))
+        spec = replace(task.spec, init_seed=seed % (MAX_INIT_SEED + 1))
         self.module = Module(spec, device, task.schedule.band)
         self.held_out = Batch.of(task.held_out, device)
         self.samples = Batch.of(task.samples, device)
-        if task.spec.conditioning == "frames":
+        if task.spec.conditioning == "chart_affine":
             self.module.place_frames(self.samples.points, self.samples.chart, self.samples.uv)
         self.reached = torch.zeros(len(self.samples))
         self.batches = self._batches()

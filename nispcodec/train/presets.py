@@ -119,7 +119,7 @@ class Problem:
         return NetworkSpec(
             hidden,
             2,
-            conditioning="frames",
+            conditioning="chart_affine",
             charts=self.charts,
             embedding=EMBEDDING,
             mirror=self.mirrors.uv,

@@ -19,7 +19,7 @@ from torch.nn import functional
 
 from nispcodec.core.arrays import Float64Array
 from nispcodec.core.errors import FitError
-from nispcodec.core.network import MAX_OCTAVE
+from nispcodec.core.network import MAX_ROW_SHIFT
 from nispcodec.train.backend.torch.module import Module, snapped
 from nispcodec.train.task import Batch, Curvature, Rounding
 
@@ -174,7 +174,7 @@ def _grid(module: Module, order: Tensor, roots: Sequence[Tensor], rounding: Roun
         steps *= 2 ** _finer(module, order, steps, rounding.budget)
     steps.clamp_(FINEST, COARSEST)
     # What stands for a loss says too little of charts that are rare to round them more coarsely.
-    most = MAX_OCTAVE if rounding.curvature.own else 0
+    most = MAX_ROW_SHIFT if rounding.curvature.own else 0
     held = []
     for scale, found in zip(module.scales.values(), module.rows_of_tensors, strict=True):
         step, octaves = shared_step(steps[found].numpy(), counts[found].numpy(), scale, most)
@@ -196,7 +196,7 @@ def shared_step(
     """
     wanted = np.log2(steps[counts > 0]) if counts.any() else np.zeros(1)
     first, last = float(wanted.min()), float(wanted.max())
-    exponents = np.arange(first, min(last, first + MAX_OCTAVE) + SIXTEENTHS, SIXTEENTHS)
+    exponents = np.arange(first, min(last, first + MAX_ROW_SHIFT) + SIXTEENTHS, SIXTEENTHS)
     best: tuple[float, float, Float64Array] | None = None
     for step in sorted({snapped(2.0**exponent / scale) * scale for exponent in exponents.tolist()}):
         for width in range(most.bit_length() + 1 if len(steps) > 1 else 1):

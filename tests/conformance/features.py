@@ -13,7 +13,7 @@ from PIL import Image
 from nispcodec.core.arrays import Uint8Array
 from nispcodec.core.asset import SLOTS, WRAPS, Material, Texture, TextureMap
 from nispcodec.core.document import ChartTable, Document, Frame
-from nispcodec.core.initial_weights import draws, told
+from nispcodec.core.initial_weights import initial_integers, predicted
 from nispcodec.core.network import Network, NetworkSpec
 from nispcodec.format import pack
 from tests.conformance.builder import container
@@ -68,7 +68,9 @@ def moved(source: Network, step: float) -> Network:
     tensors, place = {}, 0
     for name, shape in source.spec.shapes.items():
         count = int(np.prod(shape))
-        began = told(draws(source.spec.draw, place, count), 90, np.zeros(1, np.int64))
+        began = predicted(
+            initial_integers(source.spec.init_seed, place, count), 90, np.zeros(1, np.int64)
+        )
         symbols = generator.normal(0, 2 if count > 1 else 60, count).round() + began * (count > 1)
         tensors[name] = symbols.astype(np.float32).reshape(shape) * np.float32(step)
         place += count
@@ -76,7 +78,7 @@ def moved(source: Network, step: float) -> Network:
 
 
 def rows_apart(width: int) -> Network:
-    """Symbols of draws and more, each row's with an octave of its own, up to so many bits."""
+    """Symbols of draws and more, each row's with a row shift of its own, up to so many bits."""
     source = moved(network((12, 11), 1, 0), 2.0**-10)
     generator = np.random.default_rng(3)
     tensors = {}
@@ -150,13 +152,13 @@ def _codings() -> Iterator[tuple[str, bytes]]:
             document = dataclasses.replace(plain(), sdf=sdf)
             yield f"coding-{coding}-{kind}", pack(document, coding)
     for number in (0, 2**32 - 1):
-        drawn = moved(network((12, 11), 1, 0, draw=number), 0.0078125)
-        yield f"coding-drawn-{number}", pack(dataclasses.replace(plain(), sdf=drawn))
+        drawn = moved(network((12, 11), 1, 0, init_seed=number), 0.0078125)
+        yield f"coding-delta-init-{number}", pack(dataclasses.replace(plain(), sdf=drawn))
     for width in (1, 2, 3):
-        yield f"octaves-{width}", pack(dataclasses.replace(plain(), sdf=rows_apart(width)))
+        yield f"row-shifts-{width}", pack(dataclasses.replace(plain(), sdf=rows_apart(width)))
     coarse = dataclasses.replace(plain(), sdf=rows_apart(3))
     for coding in ("dense", "csc", "dia", "entropy"):
-        yield f"octaves-{coding}", pack(coarse, coding)
+        yield f"row-shifts-{coding}", pack(coarse, coding)
     long = quantised(pruned(network((182, 182), 1, 12)), 0.0078125)
     yield "coding-entropy-long", pack(dataclasses.replace(plain(), sdf=long), "entropy")
     empty = Network(plain().sdf.spec, {k: v * 0 for k, v in plain().sdf.tensors.items()})
@@ -173,7 +175,7 @@ def _topologies() -> Iterator[tuple[str, bytes]]:
         "sigmoid": network((16,), 1, 6, output="sigmoid"),
         "deep": network((6,) * 8, 1, 7),
         "mirror": network((9, 8), 1, 13, mirror=0b101),
-        "sided": network((9, 8), 1, 14, mirror=0b011011),
+        "signed-axes": network((9, 8), 1, 14, mirror=0b011011),
     }
     for name, sdf in sdfs.items():
         yield f"topology-{name}", pack(dataclasses.replace(plain(), sdf=sdf))
@@ -182,11 +184,16 @@ def _topologies() -> Iterator[tuple[str, bytes]]:
         "scalar": {"conditioning": "scalar", "charts": 2},
         "scalar-fourier": {"conditioning": "scalar", "charts": 2, **fourier, "output": "sigmoid"},
         "scalar-mirror": {"conditioning": "scalar", "charts": 2, **fourier, "mirror": 0b010},
-        "scalar-sided": {"conditioning": "scalar", "charts": 2, **fourier, "mirror": 0b010010},
+        "scalar-signed-axes": {
+            "conditioning": "scalar",
+            "charts": 2,
+            **fourier,
+            "mirror": 0b010010,
+        },
         "embedding": {"conditioning": "embedding", "charts": 2, "embedding": 4},
-        "frames": {"conditioning": "frames", "charts": 2, "embedding": 4},
-        "frames-sided": {
-            "conditioning": "frames",
+        "chart-affine": {"conditioning": "chart_affine", "charts": 2, "embedding": 4},
+        "chart-affine-signed-axes": {
+            "conditioning": "chart_affine",
             "charts": 2,
             "embedding": 1,
             "mirror": 0b001011,
@@ -221,7 +228,7 @@ def _tables() -> Iterator[tuple[str, bytes]]:
     tie = {name: tensor[[0, 0]] if name in ("weight.1", "bias.1") else tensor
            for name, tensor in base.chart.tensors.items()}  # fmt: skip
     yield "charts-tie", pack(dataclasses.replace(base, chart=Network(base.chart.spec, tie)))
-    yield "shell", pack(dataclasses.replace(plain(), shell=0.015625))
+    yield "half-thickness", pack(dataclasses.replace(plain(), half_thickness=0.015625))
     flags = np.array([1, 0], np.bool_)
     opened = dataclasses.replace(base.charts, has_uv=flags, openings=True)
     yield "openings", pack(dataclasses.replace(base, charts=opened))

@@ -34,7 +34,7 @@ class Reader:
         self.has_uv = flags(meta.get(5), self.k)
         self.uv_map = meta.get(6, [0.0, 0.0, 1.0, 1.0])
         self.specs = {number: topology(fields) for number, fields in sorted(meta[2].items())}
-        tensors = [(self.shapes(number), made["draw"]) for number, made in self.specs.items()]
+        tensors = [(self.shapes(number), made["init_seed"]) for number, made in self.specs.items()]
         weights = DECODER["read_nets"](unpacked(rows["NETS"]), tensors)
         self.weights = dict(zip(self.specs, weights, strict=True))
         self.images = images(meta.get(8, []), unpacked(rows["TXTR"]) if "TXTR" in rows else b"")
@@ -48,7 +48,7 @@ class Reader:
         outputs = widths[-1]
         table = {
             "embedding": [made["embedding"]],
-            "frames": [made["embedding"], outputs * coordinates, outputs],
+            "chart_affine": [made["embedding"], outputs * coordinates, outputs],
         }.get(made["conditioning"], [])
         layers = zip(widths[1:], widths[:-1], strict=True)
         return [(self.k, columns) for columns in table] + [
@@ -109,7 +109,7 @@ def topology(fields: dict[int, Any]) -> dict[str, Any]:
         "w0": fields.get(7, 30.0),
         "output": NUMBERED["OUTPUTS"][fields.get(8, 1) - 1],
         "mirror": fields.get(9, 0),
-        "draw": fields.get(10, 0),
+        "init_seed": fields.get(10, 0),
     }
 
 

@@ -209,7 +209,7 @@ _FIELDS: dict[str, tuple[dict[int, Any], str]] = {
     "chart-has-uv-tail": ({5: b"\x01"}, "document.chart_has_uv"),
     "chart-has-uv-default": ({5: b"\x80"}, "document.chart_has_uv"),
     "uv-map-default": ({6: [0.0, 0.0, 1.0, 1.0]}, "document.uv_map"),
-    "shell-integer": ({9: 1}, "document.shell"),
+    "half-thickness-integer": ({9: 1}, "document.half_thickness"),
     "openings-default": ({11: False}, "document.openings"),
     "openings-alone": ({11: True}, "document.openings"),
     "info-empty": ({10: {}}, "document.info"),
@@ -247,9 +247,9 @@ _SPECS: dict[str, tuple[dict[int, Any], str]] = {
     "mirror-bit-unknown": ({1: [2], 9: 64}, "mirror"),
     "mirror-negative": ({1: [2], 9: -1}, "mirror"),
     "mirror-flag": ({1: [2], 9: True}, "mirror"),
-    "draw-default": ({1: [2], 10: 0}, "draw"),
-    "draw-negative": ({1: [2], 10: -1}, "draw"),
-    "draw-large": ({1: [2], 10: 2**32}, "draw"),
+    "init-seed-default": ({1: [2], 10: 0}, "init_seed"),
+    "init-seed-negative": ({1: [2], 10: -1}, "init_seed"),
+    "init-seed-large": ({1: [2], 10: 2**32}, "init_seed"),
     "spec-key-unknown": ({1: [2], 11: 1}, "keys"),
 }
 
@@ -313,7 +313,7 @@ def _tensors() -> Iterator[Malformed]:
     overflow = b"\x19" + struct.pack("<f", 3e38) + b"\x03" + b"\x7f" * 6
     cases = {
         "coding-reserved": (b"\0" + dense(6)[1:], "coding"),
-        "drawn-without-step": (b"\x07\0" + dense(6)[1:], "step"),
+        "delta-init-without-step": (b"\x07\0" + dense(6)[1:], "step"),
         "joined-dense": (b"\x41" + dense(6)[1:], "joined"),
         "number-kind-reserved": (b"\x01\0" + bytes(12), "number kind"),
         "number-kind-of-symbols": (b"\x01\x03" + bytes(6), "number kind"),
@@ -321,7 +321,7 @@ def _tensors() -> Iterator[Malformed]:
         "step-zero": (b"\x19\0\0\0\0\x03" + bytes(6), "step"),
         "step-negative": (b"\x19" + struct.pack("<f", -1) + b"\x03" + bytes(6), "step"),
         "step-nan": (b"\x11" + struct.pack("<e", float("nan")) + b"\x03" + bytes(6), "step"),
-        "octaves-tail": (b"\x29\0\x03" + bytes(6), "octaves"),
+        "row-shifts-tail": (b"\x29\0\x03" + bytes(6), "row_shifts"),
         "step-same-as-none": (b"\x21\x03" + bytes(6), "step"),
     }
     for name, (tensor, field) in cases.items():
@@ -362,28 +362,28 @@ def _sparse() -> Iterator[Malformed]:
 
 
 def _entropy() -> Iterator[Malformed]:
-    """The first tensor symbols in the coding entropy, with a good head and stream to break."""
-    small = entropy.Run(np.array([1, 0, 0, -1, 0, 1], np.int32))
-    large = entropy.Run(np.array([516, 0, 3, -9, 0, 1], np.int32))
-    head, stream = small.head(), entropy.encode([small])
-    wide, wide_stream = large.head(), entropy.encode([large])
+    """The first tensor symbols in the coding entropy, with a good header and stream to break."""
+    small = entropy.SymbolRun(np.array([1, 0, 0, -1, 0, 1], np.int32))
+    large = entropy.SymbolRun(np.array([516, 0, 3, -9, 0, 1], np.int32))
+    header, stream = small.header(), entropy.encode([small])
+    wide, wide_stream = large.header(), entropy.encode([large])
     yield from _heads()
     cases = {
-        "stream-missing": (head, b"", "words"),
-        "stream-half-a-state": (head, stream[:2], "words"),
+        "stream-missing": (header, b"", "words"),
+        "stream-half-a-state": (header, stream[:2], "words"),
         "stream-cut": (wide, wide_stream[:4], "words"),
-        "stream-final-state": (head, b"\0\x40" + stream[2:], "final state"),
-        "stream-too-long": (head, stream + b"\0\0", "end"),
-        "stream-odd": (head, stream + b"\0", "end"),
+        "stream-final-state": (header, b"\0\x40" + stream[2:], "final state"),
+        "stream-too-long": (header, stream + b"\0\0", "end"),
+        "stream-odd": (header, stream + b"\0", "end"),
         "open-bits-cut": (wide, wide_stream[:-1], "open bits"),
         "magnitude-above-limit": (b"\x81\x04" + wide[2:], wide_stream, "magnitude"),
     }
     for name, (start, end, field) in cases.items():
         first = b"\x1e" + struct.pack("<f", 0.5) + start
         yield Malformed(name, container(rows(None, nets(first, end))), "NETS", field)
-    three = entropy.Run(np.array([300, 300, 300, 0, 0, 0], np.int32))
+    three = entropy.SymbolRun(np.array([300, 300, 300, 0, 0, 0], np.int32))
     tail = entropy.encode([three])
-    first = b"\x1e" + struct.pack("<f", 0.5) + three.head()
+    first = b"\x1e" + struct.pack("<f", 0.5) + three.header()
     tail = tail[:-1] + bytes([tail[-1] | 1])
     yield Malformed("open-bits-tail", container(rows(None, nets(first, tail))), "NETS", "open bits")
 
@@ -402,15 +402,15 @@ def _heads() -> Iterator[Malformed]:
         yield Malformed(name, file, "NETS", f"sdf.weight.0.{field}")
     last = [dense(count) for count in TENSOR_SIZES[:-1]]
     file = container(rows(None, b"".join([*last, b"\x3e\0"])))
-    yield Malformed("octaves-cut", file, "NETS", "sdf.bias.1.octaves")
-    reaches = {"drawn-reach-large": b"\x80\x80\x80\x04", "drawn-reach-cut": b""}
-    for name, reach in reaches.items():
-        file = container(rows(None, b"".join([*last, b"\x1f" + step + reach])))
-        yield Malformed(name, file, "NETS", "sdf.bias.1.reach")
-    # All move as far as symbols go, and where draws end that is further.
-    far = entropy.Run(np.full(6, 2**23 - 1, np.int32))
-    first = b"\x1f" + step + b"\x64" + far.head()
+    yield Malformed("row-shifts-cut", file, "NETS", "sdf.bias.1.row_shifts")
+    scales = {"delta-init-scale-large": b"\x80\x80\x80\x04", "delta-init-scale-cut": b""}
+    for name, scale in scales.items():
+        file = container(rows(None, b"".join([*last, b"\x1f" + step + scale])))
+        yield Malformed(name, file, "NETS", "sdf.bias.1.init_scale")
+    # All move as far as symbols go, and where initial weights begin that is further.
+    far = entropy.SymbolRun(np.full(6, 2**23 - 1, np.int32))
+    first = b"\x1f" + step + b"\x64" + far.header()
     file = container(rows(None, nets(first, entropy.encode([far]))))
-    yield Malformed("drawn-symbol-large", file, "NETS", "sdf.weight.0")
+    yield Malformed("delta-init-symbol-large", file, "NETS", "sdf.weight.0")
     joined = b"".join(dense(count) for count in TENSOR_SIZES[:-1]) + b"\x5e" + step + b"\0"
     yield Malformed("joined-many", container(rows(None, joined)), "NETS", "sdf.bias.1.joined")

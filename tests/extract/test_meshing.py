@@ -57,10 +57,12 @@ def test_default_resolution_follows_the_walls() -> None:
     assert default_resolution(tiny.octahedron(), 0.0) == LEAST
 
 
-@pytest.mark.parametrize(("shell", "expected"), [(0.05, LEAST), (0.004, 510), (1e-4, 2048)])
-def test_sheets_get_a_cell_for_half_their_thickness(shell: float, expected: int) -> None:
-    document = replace(tiny.document(tiny.octahedron()), shell=shell)
-    assert default_resolution(document.sdf, document.shell) == expected
+@pytest.mark.parametrize(
+    ("half_thickness", "expected"), [(0.05, LEAST), (0.004, 510), (1e-4, 2048)]
+)
+def test_sheets_get_a_cell_for_half_their_thickness(half_thickness: float, expected: int) -> None:
+    document = replace(tiny.document(tiny.octahedron()), half_thickness=half_thickness)
+    assert default_resolution(document.sdf, document.half_thickness) == expected
 
 
 def test_no_surface_at_all_has_a_default_too() -> None:

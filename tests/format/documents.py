@@ -77,7 +77,7 @@ def full() -> Document:
         sdf=quantised(network(NetworkSpec((4, 3), 1, activation="relu", output="tanh"))),
         chart=network(NetworkSpec((5,), 3, encoding="fourier", levels=2), 1),
         uv=network(NetworkSpec((4,), 2, conditioning="embedding", charts=3, embedding=2), 2),
-        shell=0.01,
+        half_thickness=0.01,
         info={"tool": "test", "seed": 7, "seconds": 0.1, "ok": True, "preset": "best"},
         extra={"ZZZZ": b"from the future"},
     )
@@ -132,12 +132,12 @@ def networks(draw: st.DrawFn, outputs: int, charts: int = 0) -> Network:
         levels=draw(st.integers(1, 3)) if fourier else 0,
         conditioning=conditioning,
         charts=charts if conditioning != "none" else 0,
-        embedding=draw(st.integers(1, 3)) if conditioning in ("embedding", "frames") else 0,
+        embedding=draw(st.integers(1, 3)) if conditioning in ("embedding", "chart_affine") else 0,
         activation=draw(st.sampled_from(ACTIVATIONS)),
         w0=draw(st.floats(0.5, 60)),
         output=draw(st.sampled_from(OUTPUTS)),
         mirror=draw(st.sampled_from([*range(8), 0b001001, 0b110111])),
-        draw=draw(st.sampled_from([0, 1, 2**32 - 1])),
+        init_seed=draw(st.sampled_from([0, 1, 2**32 - 1])),
     )
     made = network(spec, draw(st.integers(0, 9)), draw(st.sampled_from([1e-6, 0.1, 50.0])))
     if draw(st.booleans()):
@@ -174,7 +174,7 @@ def documents(draw: st.DrawFn) -> Document:
         sdf=draw(networks(1)),
         chart=draw(networks(count)) if count > 1 else None,
         uv=draw(networks(2, count)) if table.has_uv.any() else None,
-        shell=draw(_UNIT),
+        half_thickness=draw(_UNIT),
         info=draw(st.dictionaries(_NAMES, scalars, max_size=4)),
         extra=draw(st.dictionaries(unknown, st.binary(max_size=40), max_size=2)),
     )
@@ -190,7 +190,7 @@ def assert_same(first: Document, second: Document) -> None:
     assert first.charts.openings == second.charts.openings
     assert first.materials == second.materials
     assert first.textures == second.textures
-    assert (first.shell, first.extra) == (second.shell, second.extra)
+    assert (first.half_thickness, first.extra) == (second.half_thickness, second.extra)
     assert first.info.keys() == second.info.keys()
     for key, value in first.info.items():
         assert value == second.info[key] or np.float32(value) == np.float32(second.info[key])

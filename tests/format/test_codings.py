@@ -11,7 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 
-from nispcodec.format.codings import bits, coo, csc, csr, curve, dense, dia, entropy, rans
+from nispcodec.format.codings import bits, coo, csc, csr, dense, dia, entropy, frequency_model, rans
 from nispcodec.format.codings.reader import Reader, varint
 from nispcodec.format.constants import MAX_CELLS, MAX_SYMBOL
 
@@ -40,10 +40,10 @@ def through(coding: ModuleType, matrix: np.ndarray[Any, Any]) -> np.ndarray[Any,
 
 def streamed(values: list[np.ndarray[Any, Any]]) -> list[np.ndarray[Any, Any]]:
     """Runs of the coding entropy through one stream."""
-    runs = [entropy.Run(each) for each in values]
-    reader = Reader("NETS", b"".join(run.head() for run in runs) + entropy.encode(runs))
-    heads = [entropy.read_head(reader, each.size, each.dtype.kind == "i") for each in values]
-    decoded = [each for each, _ in entropy.decode(reader, heads)]
+    runs = [entropy.SymbolRun(each) for each in values]
+    reader = Reader("NETS", b"".join(run.header() for run in runs) + entropy.encode(runs))
+    headers = [entropy.read_header(reader, each.size, each.dtype.kind == "i") for each in values]
+    decoded = [each for each, _ in entropy.decode(reader, headers)]
     reader.finish()
     return decoded
 
@@ -104,7 +104,7 @@ def test_numbers_take_the_smallest_kind() -> None:
 @given(st.integers(1, 2**31))
 @settings(deadline=None)
 def test_cells(limit: int) -> None:
-    cells, left_open = curve.cells(limit)
+    cells, left_open = frequency_model.cells(limit)
     assert cells <= MAX_CELLS
     assert (cells - 1) << left_open < limit <= cells << left_open
     assert left_open == 0 or limit > MAX_CELLS << left_open - 1
@@ -113,11 +113,11 @@ def test_cells(limit: int) -> None:
 @given(hnp.arrays(np.int64, st.integers(2, 257), elements=st.integers(0, 10**6)).filter(np.any))
 @settings(deadline=None)
 def test_the_curve_that_fits(counts: np.ndarray[Any, Any]) -> None:
-    best, claimed = curve.fit(counts)
+    best, claimed = frequency_model.fit(counts)
     bits_each = rans.SCALE_BITS - np.log2(np.diff(best.starts(len(counts) - 1)))
     assert bits_each[len(counts) - 1 :] @ counts + 8 * (best.zeros > 0) == pytest.approx(claimed)
     reader = Reader("NETS", best.encode())
-    assert curve.decode(reader) == best
+    assert frequency_model.decode(reader) == best
     reader.finish()
 
 
@@ -128,7 +128,12 @@ def test_rans(data: st.DataObject) -> None:
     for _ in range(data.draw(st.integers(1, 3))):
         drawn = data.draw(st.lists(st.integers(0, 8), max_size=60))
         tokens.append(np.array(drawn, np.int64))
-        runs.append((len(drawn), curve.Curve(data.draw(st.integers(0, 31)), 1, 0).starts(4)))
+        runs.append(
+            (
+                len(drawn),
+                frequency_model.FrequencyModel(data.draw(st.integers(0, 31)), 1, 0).starts(4),
+            )
+        )
     pairs = list(zip(tokens, [starts for _, starts in runs], strict=True))
     starts = np.concatenate([starts[run] for run, starts in pairs])
     frequencies = np.concatenate([np.diff(starts)[run] for run, starts in pairs])
@@ -144,10 +149,10 @@ def test_quantised_weights_cost_little_more_than_their_entropy(spread: float, sh
     symbols = np.rint(drawn).astype(np.int32)
     _, counts = np.unique(symbols, return_counts=True)
     ideal = -(counts * np.log2(counts / counts.sum())).sum() / 8
-    run = entropy.Run(symbols)
+    run = entropy.SymbolRun(symbols)
     stream = entropy.encode([run])
     assert len(stream) < run.streamed() + 4
-    assert len(run.head()) + len(stream) < 1.03 * ideal + 8
+    assert len(run.header()) + len(stream) < 1.03 * ideal + 8
 
 
 def test_pruned_symbols_cost_little_more_than_their_entropy() -> None:
@@ -155,7 +160,7 @@ def test_pruned_symbols_cost_little_more_than_their_entropy() -> None:
     symbols = np.rint(generator.normal(0, 30, 3000) * (generator.random(3000) < 0.15))
     _, counts = np.unique(symbols, return_counts=True)
     ideal = -(counts * np.log2(counts / counts.sum())).sum() / 8
-    assert len(entropy.encode([entropy.Run(symbols.astype(np.int32))])) < 1.05 * ideal + 8
+    assert len(entropy.encode([entropy.SymbolRun(symbols.astype(np.int32))])) < 1.05 * ideal + 8
 
 
 @given(st.lists(st.tuples(st.integers(0, 2**32 - 1), st.integers(0, 32)), max_size=40))

@@ -13,7 +13,7 @@ ENCODERS = {
     "preset": "balanced",
     "seed": 7,
     "hidden_share": 0.0129,
-    "sheet_share": 0.0,
+    "open_surface_share": 0.0,
     "distance_error": 4.25e-4,
     "chart_accuracy": 1.0,
     "uv_error_median": 2.47e-4,

@@ -32,8 +32,8 @@ def bombs() -> dict[str, bytes]:
     dia = b"".join(_full_diagonals(*size) for size in sizes)
     few = np.zeros(512 * (3 + 1 + 512 + 1), np.int32)
     few[0] = 1
-    zeros = entropy.Run(few)
-    endless = b"\xde\0\0\0\x3f" + zeros.head() + b"\x26\0" * 2 + entropy.encode([zeros])
+    zeros = entropy.SymbolRun(few)
+    endless = b"\xde\0\0\0\x3f" + zeros.header() + b"\x26\0" * 2 + entropy.encode([zeros])
     texture = meta({8: [{1: "a"}]})
     crowd = bytes(msgpack.packb({1: [[b""] * 4000 for _ in range(4)]}))
     nested = b"\x81\x01" + b"\xdc\x10\x00" * 500

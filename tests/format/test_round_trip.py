@@ -76,7 +76,7 @@ def test_overhead_of_a_one_material_asset() -> None:
         ),
         chart=network(NetworkSpec((32,) * 3, 13)),
         uv=network(spec),
-        shell=0.0,
+        half_thickness=0.0,
         info=ENCODERS,
         extra={},
     )

@@ -11,7 +11,7 @@ import pytest
 from nispcodec.core import asset, network
 from nispcodec.core.texture import sample_texture
 from nispcodec.format import constants, inspect, pack, steps, unpack
-from nispcodec.format.codings import curve
+from nispcodec.format.codings import frequency_model
 from nispcodec.format.codings.reader import Reader
 from nispcodec.format.container import content, read_container
 from nispcodec.format.record import Record
@@ -80,7 +80,7 @@ def test_header_and_table_layout() -> None:
 @pytest.mark.parametrize("zeros", [0, 1, 255])
 def test_its_frequencies(cells: int, zeros: int) -> None:
     for byte in range(128):
-        made = curve.Curve(byte & 31, byte >> 5, zeros)
+        made = frequency_model.FrequencyModel(byte & 31, byte >> 5, zeros)
         expected = DECODER["frequencies"](cells, made.narrowness, made.tail, zeros)
         assert np.diff(made.starts(cells)).tolist() == expected
         assert sum(expected) == 2**14
@@ -144,7 +144,7 @@ def test_its_weight_decoder(coding: str | None) -> None:
     document = full()
     data = pack(document, coding)
     nets = next(entry for entry in read_container(data) if entry.code == "NETS")
-    tensors = [(matrices(each), each.spec.draw) for each in document.networks.values()]
+    tensors = [(matrices(each), each.spec.init_seed) for each in document.networks.values()]
     decoded = DECODER["read_nets"](bytes(content(nets)), tensors)
     for each, found in zip(document.networks.values(), decoded, strict=True):
         for values, tensor in zip(found, each.tensors.values(), strict=True):
@@ -165,10 +165,16 @@ def matrices(made: network.Network) -> list[tuple[int, int]]:
         {"conditioning": "scalar", "charts": 5, "output": "sigmoid", "w0": 4.0},
         {"conditioning": "scalar", "charts": 5, "encoding": "fourier", "levels": 2},
         {"conditioning": "embedding", "charts": 5, "embedding": 3},
-        {"conditioning": "frames", "charts": 5, "embedding": 3, "mirror": 18, "output": "sigmoid"},
+        {
+            "conditioning": "chart_affine",
+            "charts": 5,
+            "embedding": 3,
+            "mirror": 18,
+            "output": "sigmoid",
+        },
         {"conditioning": "scalar", "charts": 5, "encoding": "fourier", "levels": 2, "mirror": 13},
     ],
-    ids=["plain", "fourier", "scalar", "both", "embedding", "frames", "mirror"],
+    ids=["plain", "fourier", "scalar", "both", "embedding", "chart_affine", "mirror"],
 )
 def test_its_evaluator(options: dict[str, object]) -> None:
     made = random_network(network.NetworkSpec((8, 7), 2, **options), scale=0.1)  # type: ignore[arg-type]

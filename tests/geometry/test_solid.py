@@ -29,7 +29,7 @@ def back_to_back(gap: float) -> Float64Array:
 def test_a_closed_body_is_all_outer() -> None:
     solid = build_solid(cube((-0.5, -0.5, -0.5), 1.0))
     assert solid.hidden_share == 0
-    assert solid.sheet_share == 0
+    assert solid.open_surface_share == 0
     assert area(solid.pieces).sum() == pytest.approx(6)
     assert set(solid.parents) == set(range(12))
 
@@ -57,14 +57,14 @@ def test_the_inside_of_an_inverted_body_is_inside() -> None:
 
 def test_a_card_gets_a_thickness() -> None:
     solid = build_solid(CARD)
-    assert solid.sheet_share == 1
+    assert solid.open_surface_share == 1
     assert heights_above(solid) == pytest.approx(HEIGHTS - SHELL, abs=2 * LIFT)
 
 
 @pytest.mark.parametrize("gap", [0.0, 1e-4, THIN / 2])
 def test_two_cards_back_to_back_get_a_thickness(gap: float) -> None:
     solid = build_solid(back_to_back(gap))
-    assert solid.sheet_share == 1
+    assert solid.open_surface_share == 1
     assert heights_above(solid) == pytest.approx(np.maximum(HEIGHTS - gap, 0) - SHELL, abs=2 * LIFT)
     assert heights_above(solid, [gap / 2]) == pytest.approx(gap / 2 - SHELL, abs=2 * LIFT)
 
@@ -78,7 +78,7 @@ def test_of_two_faces_back_to_back_the_one_on_the_same_side_is_closest() -> None
 
 def test_a_wall_with_an_inside_has_its_own_thickness() -> None:
     solid = build_solid(back_to_back(3 * THIN))
-    assert solid.sheet_share == 0
+    assert solid.open_surface_share == 0
     assert heights_above(solid, [-0.01, THIN, 0.01]) == pytest.approx([0.01, -THIN, 0.007])
 
 
@@ -88,7 +88,7 @@ def test_leaves_are_sheets_however_many() -> None:
     places = random.normal(0, 0.3, (60, 1, 1, 3))
     leaves = (0.25 * np.einsum("nij,mcj->nmci", turns, CARD) + places).reshape(-1, 3, 3)
     solid = build_solid(leaves)
-    assert solid.sheet_share == 1
+    assert solid.open_surface_share == 1
     assert not DistanceField(solid).inside(random.normal(0, 0.3, (500, 3))).any()
 
 
@@ -96,13 +96,13 @@ def test_loose_panels_that_enclose_a_room_are_its_walls() -> None:
     panels = cube((-0.5,) * 3, 1.0)
     outwards = panels.reshape(6, 6, 3).mean(axis=1)
     solid = build_solid(panels + 0.004 * np.repeat(outwards, 2, axis=0)[:, None])
-    assert solid.sheet_share == 0
+    assert solid.open_surface_share == 0
     assert DistanceField(solid).closest(np.zeros((1, 3))).sdf[0] == pytest.approx(-0.502)
 
 
 def test_an_open_bowl_is_a_sheet_without_a_lid() -> None:
     solid = build_solid(hemisphere() - [0, 0, 0.5])
-    assert solid.sheet_share == pytest.approx(1)
+    assert solid.open_surface_share == pytest.approx(1)
     below_the_rim = np.array([[0.0, 0.0, -0.3]])
     assert DistanceField(solid).closest(below_the_rim).sdf[0] > 0.5
 
@@ -110,7 +110,7 @@ def test_an_open_bowl_is_a_sheet_without_a_lid() -> None:
 def test_a_bowl_whose_rim_is_plugged_by_a_body_is_solid() -> None:
     bowl = 0.4 * hemisphere() + [0, 0, 0.45]
     solid = build_solid(np.concatenate([cube((-0.5,) * 3, 1.0), bowl]))
-    assert solid.sheet_share == pytest.approx(0, abs=1e-3)
+    assert solid.open_surface_share == pytest.approx(0, abs=1e-3)
     assert DistanceField(solid).closest(np.array([[0, 0, 0.6]])).sdf[0] < -0.1
 
 

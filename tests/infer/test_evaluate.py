@@ -27,9 +27,15 @@ SPECS = {
     "embedding fourier": NetworkSpec(
         (8,), 2, encoding="fourier", levels=2, conditioning="embedding", charts=5, embedding=3
     ),
-    "frames": NetworkSpec((8, 8), 2, conditioning="frames", charts=5, embedding=3, w0=2.0),
+    "frames": NetworkSpec((8, 8), 2, conditioning="chart_affine", charts=5, embedding=3, w0=2.0),
     "frames sided": NetworkSpec(
-        (8,), 2, conditioning="frames", charts=5, embedding=3, mirror=0b010110, output="sigmoid"
+        (8,),
+        2,
+        conditioning="chart_affine",
+        charts=5,
+        embedding=3,
+        mirror=0b010110,
+        output="sigmoid",
     ),
     "mirror": NetworkSpec((8, 8), 1, w0=2.0, mirror=0b101),
     "mirror scalar fourier": NetworkSpec(
@@ -65,7 +71,7 @@ def by_hand(network: Network, point: np.ndarray, chart: int) -> list[float]:
         values = [math.sin(spec.w0 * z) if sine else max(0.0, z) for z in before]
     weight, bias = network.layers[-1]
     last = weight.astype(float) @ np.array(values) + bias
-    if spec.conditioning == "frames":
+    if spec.conditioning == "chart_affine":
         slopes = network.tensors["slopes"][chart].reshape(len(last), -1).astype(float)
         last = last + slopes @ np.array(coordinates) + network.tensors["offsets"][chart]
     outputs = {

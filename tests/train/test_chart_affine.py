@@ -25,7 +25,7 @@ def uvs_of(seen: np.ndarray) -> np.ndarray:
 
 @pytest.mark.parametrize("mirror", [0, 0b001, 0b001001], ids=["plain", "mirrored", "sided"])
 def test_a_network_of_zeros_answers_with_its_frames(mirror: int) -> None:
-    spec = NetworkSpec((4,), 2, conditioning="frames", charts=3, embedding=1, mirror=mirror)
+    spec = NetworkSpec((4,), 2, conditioning="chart_affine", charts=3, embedding=1, mirror=mirror)
     seen = np.where([mirror >> axis & 1 for axis in range(3)], np.abs(POINTS), POINTS)
     uvs = uvs_of(seen).astype(np.float32)
     module = Module(spec, "cpu")

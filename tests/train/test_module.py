@@ -17,7 +17,9 @@ SPECS = {
     "fourier sigmoid": NetworkSpec((6,), 2, "fourier", 4, w0=1.0, output="sigmoid"),
     "scalar": NetworkSpec((6,), 2, "fourier", 3, "scalar", charts=5, w0=1.0),
     "embedding": NetworkSpec((6, 6), 2, conditioning="embedding", charts=5, embedding=3),
-    "frames": NetworkSpec((6, 6), 2, conditioning="frames", charts=5, embedding=3, mirror=0b011011),
+    "frames": NetworkSpec(
+        (6, 6), 2, conditioning="chart_affine", charts=5, embedding=3, mirror=0b011011
+    ),
     "paper uv": paper_uv(3),
     "mirror": NetworkSpec((9, 7), 1, mirror=0b101),
     "sided": NetworkSpec((9, 7), 1, mirror=0b101101),

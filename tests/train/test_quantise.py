@@ -27,7 +27,7 @@ from tests.train.test_loop import ball_samples, module_of, sdf_task
 SPECS = {
     "sdf": NetworkSpec((7, 6), 1, w0=5.0),
     "chart": NetworkSpec((8,), 3),
-    "uv": NetworkSpec((6, 5), 2, conditioning="frames", charts=4, embedding=3),
+    "uv": NetworkSpec((6, 5), 2, conditioning="chart_affine", charts=4, embedding=3),
 }
 POINTS = 500
 

@@ -1,7 +1,7 @@
 """Entropy: runs of tensors under a curve each, all in one rANS stream at the end of the section.
 
 A stream for each of the small tensors of a network would cost 2 percent, and tables of frequencies
-more than that. A run's own record is its head.
+more than that. A run's own record is its header.
 """
 
 from __future__ import annotations
@@ -12,8 +12,8 @@ from functools import cached_property
 import numpy as np
 
 from nispcodec.core.arrays import AnyArray, Int64Array
-from nispcodec.format.codings import bits, curve, rans, signed
-from nispcodec.format.codings.curve import Curve
+from nispcodec.format.codings import bits, frequency_model, rans, signed
+from nispcodec.format.codings.frequency_model import FrequencyModel
 from nispcodec.format.codings.reader import Reader, varint
 from nispcodec.format.constants import MAX_SYMBOL
 
@@ -21,27 +21,27 @@ Coded = tuple[AnyArray, float]
 """Values of a run, and the bits that an ideal coder takes for them."""
 
 
-class Run:
+class SymbolRun:
     """Values to write under one curve: (n,) float32 weights or int32 symbols."""
 
     def __init__(self, values: AnyArray) -> None:
         self._prefix, self._integers = signed.encode(values)
         self._magnitudes = np.abs(self._integers)
         self._limit = int(self._magnitudes.max())
-        self._cells, self._open = curve.cells(self._limit)
+        self._cells, self._open = frequency_model.cells(self._limit)
 
     @cached_property
     def _cell(self) -> Int64Array:
         return np.where(self._magnitudes > 0, (self._magnitudes - 1 >> self._open) + 1, 0)
 
     @cached_property
-    def _fitted(self) -> tuple[Curve, float]:
-        return curve.fit(np.bincount(self._cell, minlength=self._cells + 1))
+    def _fitted(self) -> tuple[FrequencyModel, float]:
+        return frequency_model.fit(np.bincount(self._cell, minlength=self._cells + 1))
 
-    def head(self) -> bytes:
+    def header(self) -> bytes:
         """The record: what is needed to read the values."""
-        head = self._prefix + varint(self._limit)
-        return head + self._fitted[0].encode() if self._limit else head
+        header = self._prefix + varint(self._limit)
+        return header + self._fitted[0].encode() if self._limit else header
 
     def streamed(self) -> float:
         """Bytes that the run takes in the stream."""
@@ -62,7 +62,7 @@ class Run:
         return bits.encode(below, np.full(len(below), self._open, np.uint8))
 
 
-def encode(runs: list[Run]) -> bytes:
+def encode(runs: list[SymbolRun]) -> bytes:
     """The stream: rANS words of all tokens, then what they leave open, run after run."""
     starts: list[int] = []
     frequencies: list[int] = []
@@ -74,14 +74,14 @@ def encode(runs: list[Run]) -> bytes:
 
 
 @dataclass(frozen=True)
-class Head:
+class RunHeader:
     """A run's record: how many values of which kind (None: symbols), how large, which curve."""
 
     count: int
     kind: str | None
     top: int
     limit: int
-    curve: Curve | None
+    model: FrequencyModel | None
 
     @property
     def coded(self) -> int:
@@ -91,46 +91,46 @@ class Head:
     @cached_property
     def starts(self) -> Int64Array:
         """Where the tokens' frequencies begin; one token, zero, without curve."""
-        if self.curve is None:
+        if self.model is None:
             return np.array([0, rans.SCALE])
-        return self.curve.starts(curve.cells(self.limit)[0])
+        return self.model.starts(frequency_model.cells(self.limit)[0])
 
 
-def read_head(reader: Reader, count: int, symbols: bool) -> Head:
+def read_header(reader: Reader, count: int, symbols: bool) -> RunHeader:
     """A run's record."""
     kind, top = (None, MAX_SYMBOL) if symbols else signed.read_top(reader)
     limit = reader.varint("limit", top)
-    return Head(count, kind, top, limit, curve.decode(reader) if limit else None)
+    return RunHeader(count, kind, top, limit, frequency_model.decode(reader) if limit else None)
 
 
-def decode(reader: Reader, heads: list[Head]) -> list[Coded]:
+def decode(reader: Reader, headers: list[RunHeader]) -> list[Coded]:
     """The stream -> (n,) float32 weights or int32 symbols of every run, and the bits it took."""
-    tokens = rans.decode(reader, [(head.coded, head.starts) for head in heads])
-    ends = np.cumsum([head.coded for head in heads], dtype=np.int64)
+    tokens = rans.decode(reader, [(header.coded, header.starts) for header in headers])
+    ends = np.cumsum([header.coded for header in headers], dtype=np.int64)
     parts = np.split(tokens, ends)[:-1]
     return [
-        (_values(reader, head, part), _bits(head, part))
-        for head, part in zip(heads, parts, strict=True)
+        (_values(reader, header, part), _bits(header, part))
+        for header, part in zip(headers, parts, strict=True)
     ]
 
 
-def _bits(head: Head, tokens: Int64Array) -> float:
-    cells, open_bits = curve.cells(head.limit)
-    shares = np.diff(head.starts)[tokens] / rans.SCALE
+def _bits(header: RunHeader, tokens: Int64Array) -> float:
+    cells, open_bits = frequency_model.cells(header.limit)
+    shares = np.diff(header.starts)[tokens] / rans.SCALE
     return float(open_bits * np.count_nonzero(tokens != cells) - np.log2(shares).sum())
 
 
-def _values(reader: Reader, head: Head, tokens: Int64Array) -> AnyArray:
-    integers = np.zeros(head.count, np.int64)
-    if head.limit:
-        integers = _integers(reader, head.limit, tokens)
-    if head.kind is None:
+def _values(reader: Reader, header: RunHeader, tokens: Int64Array) -> AnyArray:
+    integers = np.zeros(header.count, np.int64)
+    if header.limit:
+        integers = _integers(reader, header.limit, tokens)
+    if header.kind is None:
         return integers.astype(np.int32)
-    return signed.decode_floats(head.kind, head.top, integers)
+    return signed.decode_floats(header.kind, header.top, integers)
 
 
 def _integers(reader: Reader, limit: int, tokens: Int64Array) -> Int64Array:
-    cells, open_bits = curve.cells(limit)
+    cells, open_bits = frequency_model.cells(limit)
     signs = np.sign(tokens - cells)
     magnitudes = np.abs(tokens - cells)
     if open_bits:

@@ -42,7 +42,7 @@ class Module:
         first["weight.0"] *= band
         first["bias.0"] *= band
         if spec.encoding == "identity":
-            first["weight.0"][:, 3 : 3 + len(spec.sided)] = 0
+            first["weight.0"][:, 3 : 3 + len(spec.signed_axes)] = 0
         self.mirrored = torch.tensor(spec.mirrored, device=device)
         flat = [first[name].flatten() for name in self._shapes]
         self.first = torch.cat(flat)
@@ -99,7 +99,7 @@ class Module:
         for i in range(last):
             hidden = activation(functional.linear(hidden, parts[f"weight.{i}"], parts[f"bias.{i}"]))
         output = functional.linear(hidden, parts[f"weight.{last}"], parts[f"bias.{last}"])
-        if self.spec.conditioning == "frames":
+        if self.spec.conditioning == "chart_affine":
             output = output + self._framed(points, rows)
         return _OUTPUTS[self.spec.output](output)
 
@@ -169,7 +169,9 @@ class Module:
         if not self.spec.mirror:
             return points
         folded = torch.where(self.mirrored, points.abs(), points)
-        return torch.cat([folded, *(points[:, axis : axis + 1] for axis in self.spec.sided)], dim=1)
+        return torch.cat(
+            [folded, *(points[:, axis : axis + 1] for axis in self.spec.signed_axes)], dim=1
+        )
 
     def _rows(self, parts: dict[str, Tensor], charts: Tensor | None) -> Tensor:
         """What the tables say of each point's chart, side by side."""
@@ -206,7 +208,7 @@ def _initial(spec: NetworkSpec) -> dict[str, Tensor]:
     bounds = _bounds(spec)
     return {
         name: torch.from_numpy(drawn / (1 << BITS) * bounds[name]).float()
-        for name, drawn in spec.drawn(spec.shapes).items()
+        for name, drawn in spec.initial_integers(spec.shapes).items()
     }
 
 

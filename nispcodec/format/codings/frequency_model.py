@@ -23,7 +23,7 @@ _HAS_ZEROS = 0x80
 
 
 @dataclass(frozen=True)
-class Curve:
+class FrequencyModel:
     """Student's curve of 2^(tail + 1) - 1 degrees of freedom, in half-octave steps of width.
 
     narrowness  0 to 31
@@ -47,13 +47,13 @@ class Curve:
         return np.concatenate([[0], np.cumsum(both)])
 
 
-def decode(reader: Reader) -> Curve:
-    """The inverse of `Curve.encode`."""
-    byte = reader.take(1, "curve")[0]
+def decode(reader: Reader) -> FrequencyModel:
+    """The inverse of `FrequencyModel.encode`."""
+    byte = reader.take(1, "model")[0]
     zeros = reader.take(1, "zeros")[0] if byte & _HAS_ZEROS else 0
     if byte & _HAS_ZEROS and not zeros:
         raise reader.error("zeros", "1 to 255", 0)
-    return Curve(byte & 31, byte >> 5 & 3, zeros)
+    return FrequencyModel(byte & 31, byte >> 5 & 3, zeros)
 
 
 def cells(limit: int) -> tuple[int, int]:
@@ -62,12 +62,12 @@ def cells(limit: int) -> tuple[int, int]:
     return (limit + (1 << open_bits) - 1) >> open_bits, open_bits
 
 
-def fit(counts: Int64Array) -> tuple[Curve, float]:
+def fit(counts: Int64Array) -> tuple[FrequencyModel, float]:
     """(cells + 1,) how often 0 and each magnitude, of either sign -> the best curve, its bits."""
     total = int(counts.sum())
     share = min(max(round(256 * int(counts[0]) / total), 1), 255)
     used = np.flatnonzero(counts)
-    best: tuple[float, Curve] | None = None
+    best: tuple[float, FrequencyModel] | None = None
     for zeros in (0, share):
         for tail in _TAILS:
             tables = frequencies(len(counts) - 1, _NARROWNESSES, tail, zeros)[:, used]
@@ -75,7 +75,7 @@ def fit(counts: Int64Array) -> tuple[Curve, float]:
             narrowness = int(bits.argmin())
             cost = float(bits[narrowness]) + (8 if zeros else 0)
             if best is None or cost < best[0]:
-                best = cost, Curve(narrowness, tail, zeros)
+                best = cost, FrequencyModel(narrowness, tail, zeros)
     assert best is not None
     return best[1], best[0]
 
