@@ -1,7 +1,7 @@
 """Points in an order that follows space: a tree asked for neighbours in turn finds its way cached.
 
 Morton's Z-order curve. In random order distances take twice as long, winding numbers up to 1.4
-times (docs/lab-notes.md).
+times (docs/decisions/0085-sampling-in-space-order.md).
 """
 
 from __future__ import annotations
