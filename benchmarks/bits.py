@@ -3,7 +3,7 @@
     python -m benchmarks.bits FOLDER [-o benchmarks/results/bits.json]
 
 Predicted: the entropy of a Gaussian of the power of each tensor's symbols, less what draws tell of
-them, as in `nispcodec.train.quantise`. Beside it, what rounding every weight one step nearer to
+them, as in `nispcodec.train.quantize`. Beside it, what rounding every weight one step nearer to
 what draws tell would save: the most that a rounding which weighs rate against distortion could
 gain, were distortion free.
 """
@@ -22,7 +22,7 @@ from nispcodec.core.network import Network
 from nispcodec.format import records, unpack, weights
 from nispcodec.format.constants import NETS
 from nispcodec.format.container import read_container, write_container
-from nispcodec.train.quantise import GAUSSIAN_BITS, HEAD
+from nispcodec.train.quantize import GAUSSIAN_BITS, HEAD
 
 Record = dict[str, float]
 

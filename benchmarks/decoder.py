@@ -1,4 +1,4 @@
-"""The decoder's numbers: queries, extraction, seams, colour; against targets, peers and the paper.
+"""The decoder's numbers: queries, extraction, seams, color; against targets, peers and the paper.
 
     python -m benchmarks.decoder --models DIR --assets ../shared/assets [--only spot]
 
@@ -75,7 +75,7 @@ TARGETS = [
     Target("duplicate vertices", ("soundness", "duplicate_vertices"), 0),
     Target("start, s", ("start_seconds",), 0.6),
 ]
-COLOR = Target("colour, dB", ("color", "psnr"), 30, at_least=True)
+COLOR = Target("color, dB", ("color", "psnr"), 30, at_least=True)
 
 
 def targets(asset: str) -> list[Target]:
@@ -197,7 +197,7 @@ def naive(document: Document, resolution: int) -> TexturedMesh:
 
 
 def fidelity(document: Document, original: TexturedMesh) -> Record:
-    """Soundness of the mesh of a plain decode, its distortion, the colour of the naive one."""
+    """Soundness of the mesh of a plain decode, its distortion, the color of the naive one."""
     mesh, report = textured_mesh(document)
     measured = compare(original, mesh)
     record = {

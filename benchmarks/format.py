@@ -2,7 +2,7 @@
 
     python -m benchmarks.format [MODEL.nisp ...] [-o benchmarks/results/format.json]
 
-Two files are made for it, of 10 and 50 kB: three networks of normal weights, quantised to six bits
+Two files are made for it, of 10 and 50 kB: three networks of normal weights, quantized to six bits
 each, 16 charts, one material, one small texture. Models given on the command line are measured
 beside them. Verifying begins with parsing, so that its time is that of both. Times are the best of
 several; on a busy machine they are longer than they need be, which the time of a loop of a million
@@ -72,15 +72,15 @@ def made(width: int) -> bytes:
         ),
         materials=(Material("initialShadingGroup", maps={"base_color": TextureMap(0)}),),
         textures=(Texture("spot_texture.png", image.getvalue(), "image/png"),),
-        sdf=quantised(NetworkSpec((width,) * 4, 1), 0),
-        chart=quantised(NetworkSpec((width,) * 3, CHARTS), 1),
-        uv=quantised(uv, 2),
+        sdf=quantized(NetworkSpec((width,) * 4, 1), 0),
+        chart=quantized(NetworkSpec((width,) * 3, CHARTS), 1),
+        uv=quantized(uv, 2),
         info=INFO,
     )
     return pack(document)
 
 
-def quantised(spec: NetworkSpec, seed: int) -> Network:
+def quantized(spec: NetworkSpec, seed: int) -> Network:
     """Normal weights of 16 steps' deviation: six bits of entropy each."""
     generator = np.random.default_rng(seed)
     tensors = {

@@ -1,12 +1,12 @@
-"""The paper's comparisons: UV by chart against UV without charts and against a network of colours.
+"""The paper's comparisons: UV by chart against UV without charts and against a network of colors.
 
     python -m benchmarks.paper_pictures --models DIR --assets ../shared/assets [--only spot]
 
 DIR holds NAME.nisp for the assets NAME. Two networks are fitted to each asset, with the schedule of
 the UV network of the model's preset: "unconditioned", from a point to its UV with no chart to tell;
-and "colour" (OverfitColor), from a point to the base colour, of as many weights as the model's
-chart and UV networks have together. Neither is quantised. Writes the JSON and, for each asset, one
-picture, unlit: original, ours, unconditioned, colour. Results are kept asset by asset; one that has
+and "color" (OverfitColor), from a point to the base color, of as many weights as the model's
+chart and UV networks have together. Neither is quantized. Writes the JSON and, for each asset, one
+picture, unlit: original, ours, unconditioned, color. Results are kept asset by asset; one that has
 a result for the same bytes is not measured again.
 """
 
@@ -35,7 +35,7 @@ from nispcodec.encode.recipe import GAP
 from nispcodec.infer.evaluate import evaluate
 from nispcodec.io.load import load_mesh
 from nispcodec.metrics.color import color_at
-from nispcodec.metrics.parameterisation import distortion_summary
+from nispcodec.metrics.parameterization import distortion_summary
 from nispcodec.metrics.pictures import compare_pictures
 from nispcodec.metrics.psnr import psnr
 from nispcodec.metrics.sides import sides_of
@@ -60,16 +60,16 @@ from nispcodec.train.task import Batch, Schedule, Task
 from nispcodec.train.workers import fit_networks
 
 RESULTS = Path("benchmarks/results/paper_pictures.json")
-PAINTERS = ("ours", "unconditioned", "colour")
+PAINTERS = ("ours", "unconditioned", "color")
 POINTS, VIEWS, SIZE = 100_000, 4, 320
 
 TARGETS = [
-    Target("colour: dB above OverfitColor", ("gains", "colour"), 0, at_least=True),
-    Target("colour: dB above no charts", ("gains", "unconditioned"), 0, at_least=True),
+    Target("color: dB above OverfitColor", ("gains", "color"), 0, at_least=True),
+    Target("color: dB above no charts", ("gains", "unconditioned"), 0, at_least=True),
 ]
 
 Painter = Callable[[Float32Array], Float32Array]
-"""Points (n, 3), normalised frame -> base colours (n, 3), sRGB-encoded."""
+"""Points (n, 3), normalized frame -> base colors (n, 3), sRGB-encoded."""
 
 
 def target_error(module: Module, batch: Batch) -> Tensor:
@@ -78,19 +78,19 @@ def target_error(module: Module, batch: Batch) -> Tensor:
 
 
 def baselines(mesh: TexturedMesh, model: NispModel, seed: int, threads: int) -> dict[str, Network]:
-    """The networks "unconditioned" and "colour", fitted."""
+    """The networks "unconditioned" and "color", fitted."""
     sampler = Sampler(mesh, seed, gap=GAP)
     sets, surface = training_sets(sampler), Surface.of(mesh, sampler.frame)
     specs = {name: model.document.networks[name].spec for name in _UV}
     plain = replace(specs["uv"], conditioning="none", charts=0, embedding=0)
     as_large = _of_size(sum(spec.weight_count for spec in specs.values()))
-    colored = _coloured(sets.textured, surface), _coloured(sets.held_skin, surface)
+    colored = _colored(sets.textured, surface), _colored(sets.held_skin, surface)
     schedule = _schedule(model, sets)
     tasks = [
         Task(name, spec, *samples, target_error, target_error, schedule)
         for name, spec, samples in (
             ("unconditioned", plain, (sets.textured, sets.held_skin)),
-            ("colour", as_large, colored),
+            ("color", as_large, colored),
         )
     ]
     return fit_networks(tasks, seed, "cpu", threads, _told)
@@ -116,7 +116,7 @@ def _of_size(weights: int) -> NetworkSpec:
     return [each for each in specs if each.weight_count <= weights][-1]
 
 
-def _coloured(samples: SampleSet, surface: Surface) -> SampleSet:
+def _colored(samples: SampleSet, surface: Surface) -> SampleSet:
     return replace(samples, uv=_original_color(surface)(samples.points))
 
 
@@ -146,7 +146,7 @@ class Sight:
     points: Float32Array
 
     def painted(self, paint: Painter) -> Float32Array:
-        """(SIZE, SIZE, 3): the colours of the points on white, unlit."""
+        """(SIZE, SIZE, 3): the colors of the points on white, unlit."""
         colors = np.ones((SIZE * SIZE, 3), np.float32)
         colors[self.pixels] = np.clip(paint(self.points), 0, 1)
         return colors.reshape(SIZE, SIZE, 3)
@@ -172,9 +172,9 @@ def compared(
     free = without_charts(model, networks["unconditioned"])
     original = _original_color(surface)
     painters: dict[str, Painter] = {
-        "ours": lambda points: model.color(points, "normalised")[:, :3],
-        "unconditioned": lambda points: free.color(points, "normalised")[:, :3],
-        "colour": lambda points: evaluate(networks["colour"], points),
+        "ours": lambda points: model.color(points, "normalized")[:, :3],
+        "unconditioned": lambda points: free.color(points, "normalized")[:, :3],
+        "color": lambda points: evaluate(networks["color"], points),
     }
     points = surface.sample(POINTS, np.random.default_rng(1))
     points = points[sides_of(surface, points).outer]
@@ -250,7 +250,7 @@ def _told_of(name: str, record: Record) -> str:
     lines = []
     for painter in PAINTERS:
         psnr, color = record[painter]["picture_psnr"], record[painter]["color_psnr"]
-        lines.append(f"{name:<18}{painter:<16}colour {color:.2f} dB, pictures {psnr:.2f} dB")
+        lines.append(f"{name:<18}{painter:<16}color {color:.2f} dB, pictures {psnr:.2f} dB")
     for kind, each in record["distortion"].items():
         values = ", ".join(f"{key} {value:.4g}" for key, value in each.items())
         lines.append(f"{name:<18}{kind:<16}distortion {values}")

@@ -3,7 +3,7 @@
     python -m benchmarks.peers --points build/bench/points -o benchmarks/results/peers.json
 
 Reads the points that `python -m benchmarks --codec simplified_draco` has measured. Errors are in
-the normalised frame, the larger of both directions, outer samples only.
+the normalized frame, the larger of both directions, outer samples only.
 """
 
 from __future__ import annotations

@@ -103,7 +103,7 @@ def silhouette(original: Scene, decoded: Scene, model: Scene) -> Record:
 
 
 def cost(model: Path) -> Record:
-    """`nisp render` as a whole process, at SIZE and twice that: colour, from the default view."""
+    """`nisp render` as a whole process, at SIZE and twice that: color, from the default view."""
     found = {}
     for size in (SIZE, 2 * SIZE):
         with tempfile.TemporaryDirectory() as folder:

@@ -28,7 +28,7 @@ README = Path("README.md")
 BEGIN, END = "<!-- table: python -m benchmarks.readme -->\n", "<!-- end of table -->\n"
 HEAD = (
     "asset", "faces", "OBJ", "`.nisp`, no textures", "encode", "distance", "UV median", "charts",
-    "colour",
+    "color",
 )  # fmt: skip
 PEERS_BEGIN = "<!-- peers: python -m benchmarks.readme -->\n"
 PEERS_END = "<!-- end of peers -->\n"

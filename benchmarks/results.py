@@ -12,7 +12,7 @@ from benchmarks.report.page import page
 from benchmarks.rows import ERRORS, as_csv, row
 from benchmarks.source import SAMPLES, SEED
 from benchmarks.store import Record, Store
-from benchmarks.summary import summarised
+from benchmarks.summary import summarized
 from benchmarks.textures import TEXTURES
 from nispcodec.core.atomic_write import write_atomic
 
@@ -44,7 +44,7 @@ def gathered(store: Store) -> Record:
         "samples": SAMPLES,
         "points": points,
         "textures": [record for record in records if record["codec"] == TEXTURES],
-        "summary": summarised([row(record) for record in points]),
+        "summary": summarized([row(record) for record in points]),
     }
 
 

@@ -16,7 +16,7 @@ ERRORS = {
     "distance": "mean distance",
     "uv": "mean UV error",
     "uv_median": "median UV error",
-    "color": "RMS colour error",
+    "color": "RMS color error",
 }
 PLACES = {
     "distance": ("metrics", "geometry", "larger", "mean"),

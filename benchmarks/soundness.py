@@ -45,7 +45,7 @@ def two_chart_triangles(document: Document, mesh: TexturedMesh) -> int:
     """Triangles whose three UVs are no single chart's, asked of the networks anew."""
     if document.uv is None:
         return 0
-    points = document.frame.to_normalised(mesh.positions).astype(np.float32)
+    points = document.frame.to_normalized(mesh.positions).astype(np.float32)
     left = np.flatnonzero(mesh.has_uv)
     if document.chart is not None:
         middles = points[mesh.faces[left]].mean(axis=1, dtype=np.float32)

@@ -21,7 +21,7 @@ COSTS = ("encode_seconds", "encode_peak_bytes", "decode_seconds", "decode_peak_b
 Summary = dict[str, Any]
 
 
-def summarised(rows: Sequence[Row]) -> Summary:
+def summarized(rows: Sequence[Row]) -> Summary:
     """Everything, by asset; the means are over assets."""
     assets = sorted({row["asset"] for row in rows})
     codecs = sorted({row["codec"] for row in rows})

@@ -71,7 +71,7 @@ def main() -> None:
 
     \b
     nisp sample -o demo                      make an asset to play with
-    nisp encode demo/sample.obj -o s.nisp    fit, quantise, write
+    nisp encode demo/sample.obj -o s.nisp    fit, quantize, write
     nisp decode s.nisp -o s.glb              textured mesh again
     nisp render s.nisp -o s.png              a picture of it
     nisp compare demo/sample.obj s.nisp      what was lost

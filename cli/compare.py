@@ -27,7 +27,7 @@ def command(
 ) -> None:
     """Measure DECODED (a .nisp or a mesh file) against the mesh file ORIGINAL.
 
-    Distances are in the normalised frame of the original. A .nisp is decoded as `nisp decode`
+    Distances are in the normalized frame of the original. A .nisp is decoded as `nisp decode`
     does, and asked for the charts too.
 
     \b

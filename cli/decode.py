@@ -35,7 +35,7 @@ REBAKE_FACES = 20_000
     type=click.FloatRange(0, min_open=True),
     help="As few triangles as keep the mean distance to the field's surface below this, in radii.",
 )
-@click.option("--colors", is_flag=True, help="Vertex colours instead of textures.")
+@click.option("--colors", is_flag=True, help="Vertex colors instead of textures.")
 @click.option(
     "--rebake",
     type=click.IntRange(16, 8192),
@@ -44,7 +44,7 @@ REBAKE_FACES = 20_000
     metavar="[SIZE]",
     help=f"One new atlas, textures 1024 texels wide; {REBAKE_FACES:,} faces unless told.",
 )
-@click.option("--keep-spurious", is_flag=True, help="Keep what is recognised as noise.")
+@click.option("--keep-spurious", is_flag=True, help="Keep what is recognized as noise.")
 def command(
     model: Path,
     output: Path,

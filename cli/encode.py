@@ -53,7 +53,7 @@ IMAGE_FORMATS = ("webp", "avif", "jpeg")
 @click.option(
     "--pad-textures",
     is_flag=True,
-    help="Fill what no face uses with the colours beside it: no specks at seams.",
+    help="Fill what no face uses with the colors beside it: no specks at seams.",
 )
 @click.option("--texture-format", type=click.Choice(IMAGE_FORMATS), help="Re-encode the images.")
 @click.option("--texture-quality", type=click.IntRange(1, 100), default=90, show_default=True)

@@ -109,7 +109,7 @@ def _network(network: Network) -> dict[str, Any]:
         "weights": spec.weight_count,
         "activation": spec.activation,
         "encoding": spec.encoding,
-        "quantised_tensors": f"{len(network.steps)} of {len(network.tensors)}",
+        "quantized_tensors": f"{len(network.steps)} of {len(network.tensors)}",
     }
     if spec.conditioning != "none":
         facts["conditioning"] = spec.conditioning

@@ -1,4 +1,4 @@
-"""`nisp query`: distance, chart, UV and colour at points."""
+"""`nisp query`: distance, chart, UV and color at points."""
 
 from __future__ import annotations
 
@@ -18,12 +18,12 @@ if TYPE_CHECKING:
 COLUMNS = "x,y,z,sdf,chart,u,v,red,green,blue,alpha"
 
 
-@click.command("query", short_help="Distance, chart, UV and colour at points.")
+@click.command("query", short_help="Distance, chart, UV and color at points.")
 @click.argument("model", type=click.Path(path_type=Path))
 @click.argument("points", type=click.Path(path_type=Path))
 @output_option(".npz", ".csv")
 @click.option(
-    "--frame", type=click.Choice(["world", "normalised"]), default="world", show_default=True
+    "--frame", type=click.Choice(["world", "normalized"]), default="world", show_default=True
 )
 def command(model: Path, points: Path, output: Path, frame: str) -> None:
     """Ask MODEL (.nisp) at POINTS: an .npy of shape (n, 3), or a .csv of x,y,z rows.

@@ -1,4 +1,4 @@
-"""A decoded asset as something to ask: distance, normal, chart, UV, colour at any point; a mesh."""
+"""A decoded asset as something to ask: distance, normal, chart, UV, color at any point; a mesh."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from nispcodec.core.document import Document
 from nispcodec.core.errors import QueryError
 from nispcodec.infer.evaluate import classify, evaluate, gradient
 
-FRAMES = ("world", "normalised")
+FRAMES = ("world", "normalized")
 PROJECTION_STEPS = 8
 FAR = 1e6
 
@@ -20,7 +20,7 @@ class NispModel:
     """One asset, queryable at any point.
 
     Queries take points (n, 3), any n, in the frame named by `frame`: "world" (the asset's own
-    units) or "normalised". They raise QueryError for a wrong shape, NaN, infinity, points more
+    units) or "normalized". They raise QueryError for a wrong shape, NaN, infinity, points more
     than a million radii away, or an unknown frame. Work is done in blocks on every core, so memory
     is bounded beyond input and output.
     """
@@ -32,13 +32,13 @@ class NispModel:
     def sdf(self, points: ArrayLike, frame: str = "world") -> Float32Array:
         """Signed distance to the surface (n,) float32, negative inside, in the units of `frame`."""
         scale = np.float32(self.document.frame.radius if frame == "world" else 1)
-        values: Float32Array = evaluate(self.document.sdf, self._normalised(points, frame))[:, 0]
+        values: Float32Array = evaluate(self.document.sdf, self._normalized(points, frame))[:, 0]
         values *= scale
         return values
 
     def normals(self, points: ArrayLike, frame: str = "world") -> Float32Array:
         """Unit gradient of the SDF (n, 3) float32, pointing outwards; 0 where the SDF is flat."""
-        _, slopes = gradient(self.document.sdf, self._normalised(points, frame))
+        _, slopes = gradient(self.document.sdf, self._normalized(points, frame))
         lengths = np.linalg.norm(slopes, axis=1, keepdims=True)
         units = np.zeros_like(slopes)
         np.divide(slopes, lengths, out=units, where=lengths > 0)
@@ -46,7 +46,7 @@ class NispModel:
 
     def charts(self, points: ArrayLike, frame: str = "world") -> Int32Array:
         """The chart that each point belongs to (n,) int32, into `document.charts`."""
-        return self._charts(self._normalised(points, frame))
+        return self._charts(self._normalized(points, frame))
 
     @property
     def chart_materials(self) -> Int32Array:
@@ -60,23 +60,23 @@ class NispModel:
 
         `charts` (n,) overrides the predicted charts. Points on charts without UV get (0, 0).
         """
-        normalised = self._normalised(points, frame)
-        return self._uv(normalised, self._charts(normalised) if charts is None else charts)
+        normalized = self._normalized(points, frame)
+        return self._uv(normalized, self._charts(normalized) if charts is None else charts)
 
     def color(self, points: ArrayLike, frame: str = "world") -> Float32Array:
-        """Base colour (n, 4) float32 RGBA in [0, 1]: RGB is sRGB-encoded, alpha linear.
+        """Base color (n, 4) float32 RGBA in [0, 1]: RGB is sRGB-encoded, alpha linear.
 
-        The base colour texture at the point's UV, filtered and wrapped as its material says, times
+        The base color texture at the point's UV, filtered and wrapped as its material says, times
         the material's factor; the factor alone where there is no texture or no UV. Openings have no
-        colour: points there get that of the likeliest chart of the asset.
+        color: points there get that of the likeliest chart of the asset.
         """
-        normalised = self._normalised(points, frame)
-        charts = self._charts(normalised, len(self.document.charts) - self.document.charts.openings)
-        uvs = self._uv(normalised, charts)
+        normalized = self._normalized(points, frame)
+        charts = self._charts(normalized, len(self.document.charts) - self.document.charts.openings)
+        uvs = self._uv(normalized, charts)
         table = self.document.charts
         # A face without UV looks nothing up: its material shows its factor, key -1 - material.
         keys = np.where(table.has_uv, table.materials, -1 - table.materials)[charts]
-        colors = np.empty((len(normalised), 4), np.float32)
+        colors = np.empty((len(normalized), 4), np.float32)
         for key in np.unique(keys).tolist():
             colors[keys == key] = self._base_color(key, uvs[keys == key])
         return colors
@@ -86,7 +86,7 @@ class NispModel:
 
         Newton steps on the fitted field: exact near the surface, approximate far from it.
         """
-        moved = self._normalised(points, frame)
+        moved = self._normalized(points, frame)
         for _ in range(PROJECTION_STEPS):
             values, slopes = gradient(self.document.sdf, moved)
             steepness = np.maximum((slopes * slopes).sum(axis=1, keepdims=True), 0.25)
@@ -107,24 +107,24 @@ class NispModel:
         `resolution`: cells along the edge of the cube that is extracted; default 256, up to 512
         where walls are thin, more for thin sheets. `faces`: the most triangles to
         return; the surface is simplified to fit. `error`: as few triangles as keep the mean
-        distance to the field's surface below it, normalised frame. `keep_spurious` keeps the
-        components that are recognised as noise of the field; a warning of the mesh counts those
+        distance to the field's surface below it, normalized frame. `keep_spurious` keeps the
+        components that are recognized as noise of the field; a warning of the mesh counts those
         that were dropped.
         """
         from nispcodec.extract.meshing import textured_mesh
 
         return textured_mesh(self.document, resolution, faces, error, keep_spurious)[0]
 
-    def _charts(self, normalised: Float32Array, among: int | None = None) -> Int32Array:
+    def _charts(self, normalized: Float32Array, among: int | None = None) -> Int32Array:
         network = self.document.chart
         if network is None:
-            return np.zeros(len(normalised), np.int32)
-        return classify(network, normalised, among)
+            return np.zeros(len(normalized), np.int32)
+        return classify(network, normalized, among)
 
-    def _uv(self, normalised: Float32Array, charts: IntArray) -> Float32Array:
+    def _uv(self, normalized: Float32Array, charts: IntArray) -> Float32Array:
         from nispcodec.infer.texture_coordinates import asset_uv
 
-        return asset_uv(self.document, normalised, charts)
+        return asset_uv(self.document, normalized, charts)
 
     def _base_color(self, key: int, uvs: Float32Array) -> Float32Array:
         from nispcodec.core.texture import base_color
@@ -141,7 +141,7 @@ class NispModel:
             self._images[texture] = decode_image(self.document.textures[texture])
         return self._images[texture]
 
-    def _normalised(self, points: ArrayLike, frame: str) -> Float32Array:
+    def _normalized(self, points: ArrayLike, frame: str) -> Float32Array:
         if frame not in FRAMES:
             raise QueryError(f"frame: expected one of {', '.join(FRAMES)}, found {frame!r}")
         array = np.asarray(points)
@@ -149,12 +149,12 @@ class NispModel:
             raise QueryError(
                 f"points: expected numbers of shape (n, 3), found {array.dtype} of {array.shape}"
             )
-        normalised = self.document.frame.to_normalised(array) if frame == "world" else array
-        near = (np.abs(normalised) < FAR).all(axis=1)
+        normalized = self.document.frame.to_normalized(array) if frame == "world" else array
+        near = (np.abs(normalized) < FAR).all(axis=1)
         if not near.all():
             row = int(np.argmin(near))
             raise QueryError(
                 f"points: expected finite numbers within {FAR:g} radii of the asset, "
                 f"found {array[row].tolist()} in row {row}"
             )
-        return normalised.astype(np.float32)
+        return normalized.astype(np.float32)

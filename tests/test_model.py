@@ -31,21 +31,21 @@ def points() -> np.ndarray:
 
 def test_sdf_is_in_the_units_of_the_frame(model: NispModel, points: np.ndarray) -> None:
     expected = (np.abs(points).sum(axis=1) - 0.8) / np.sqrt(3)
-    np.testing.assert_allclose(model.sdf(points, "normalised"), expected, atol=1e-6)
+    np.testing.assert_allclose(model.sdf(points, "normalized"), expected, atol=1e-6)
     world = FRAME.to_world(points)
     np.testing.assert_allclose(model.sdf(world), expected * FRAME.radius, atol=1e-5)
 
 
 @pytest.mark.parametrize("query", ["normals", "charts", "uv", "color"])
 def test_frames_agree(query: str, model: NispModel, points: np.ndarray) -> None:
-    normalised = getattr(model, query)(points, "normalised")
+    normalized = getattr(model, query)(points, "normalized")
     world = getattr(model, query)(FRAME.to_world(points))
-    np.testing.assert_allclose(world, normalised, atol=1e-5)
+    np.testing.assert_allclose(world, normalized, atol=1e-5)
 
 
 def test_normals_are_unit_gradients(model: NispModel, points: np.ndarray) -> None:
     expected = np.sign(points) / np.sqrt(3)
-    np.testing.assert_allclose(model.normals(points, "normalised"), expected, atol=1e-6)
+    np.testing.assert_allclose(model.normals(points, "normalized"), expected, atol=1e-6)
 
 
 def test_normals_of_a_flat_field_are_zero() -> None:
@@ -56,24 +56,24 @@ def test_normals_of_a_flat_field_are_zero() -> None:
 
 def test_charts_and_uv(model: NispModel, points: np.ndarray) -> None:
     charts = (points[:, 0] > 0).astype(int)
-    assert np.array_equal(model.charts(points, "normalised"), charts)
+    assert np.array_equal(model.charts(points, "normalized"), charts)
     expected = np.column_stack(
         [0.25 + points[:, 1] * 0.25 + 0.5 * charts, 0.25 + points[:, 2] * 0.25]
     )
-    np.testing.assert_allclose(model.uv(points, "normalised"), expected, atol=1e-6)
+    np.testing.assert_allclose(model.uv(points, "normalized"), expected, atol=1e-6)
 
 
 def test_given_charts_override_the_predicted(model: NispModel, points: np.ndarray) -> None:
     ones = np.ones(len(points), np.int64)
-    shift = model.uv(points, "normalised", ones) - model.uv(points, "normalised", 0 * ones)
+    shift = model.uv(points, "normalized", ones) - model.uv(points, "normalized", 0 * ones)
     np.testing.assert_allclose(shift, np.tile([0.5, 0.0], (len(points), 1)), atol=1e-6)
 
 
 def test_uv_map_and_charts_without_uv(points: np.ndarray) -> None:
     plain = tiny.document()
     table = ChartTable(plain.charts.materials, np.array([True, False]), (-1.0, 2.0), (4.0, 3.0))
-    moved = NispModel(replace(plain, charts=table)).uv(points, "normalised")
-    original = NispModel(plain).uv(points, "normalised")
+    moved = NispModel(replace(plain, charts=table)).uv(points, "normalized")
+    original = NispModel(plain).uv(points, "normalized")
     left = points[:, 0] < 0
     np.testing.assert_allclose(moved[left], original[left] * [4, 3] + [-1, 2], atol=1e-5)
     assert not moved[~left].any()
@@ -82,12 +82,12 @@ def test_uv_map_and_charts_without_uv(points: np.ndarray) -> None:
 def test_color_looks_the_texture_up(model: NispModel) -> None:
     # Chart 0 is textured red | green over blue | white: (u, v) = (0.25, 0.25) is blue.
     at = np.array([[-0.5, 0.0, 0.0]])
-    np.testing.assert_allclose(model.color(at, "normalised"), [[0, 0, 1, 1]], atol=1e-6)
+    np.testing.assert_allclose(model.color(at, "normalized"), [[0, 0, 1, 1]], atol=1e-6)
 
 
 def test_color_of_a_plain_material_is_its_factor_in_srgb(model: NispModel) -> None:
-    grey = model.color(np.array([[0.5, 0.0, 0.0]]), "normalised")
-    np.testing.assert_allclose(grey, [[0.7354, 0.7354, 0.7354, 1]], atol=1e-3)
+    gray = model.color(np.array([[0.5, 0.0, 0.0]]), "normalized")
+    np.testing.assert_allclose(gray, [[0.7354, 0.7354, 0.7354, 1]], atol=1e-3)
 
 
 def test_color_without_uv_ignores_the_texture() -> None:
@@ -98,20 +98,20 @@ def test_color_without_uv_ignores_the_texture() -> None:
     np.testing.assert_allclose(color, [[0, 1, 0, 0.5]], atol=1e-6)
 
 
-def test_openings_have_no_colour_of_their_own(model: NispModel, points: np.ndarray) -> None:
+def test_openings_have_no_color_of_their_own(model: NispModel, points: np.ndarray) -> None:
     table = replace(model.document.charts, has_uv=np.array([True, False]), openings=True)
     opened = NispModel(replace(model.document, charts=table))
-    assert set(opened.charts(points, "normalised")) == {0, 1}
-    uvs = opened.uv(points, "normalised", np.zeros(len(points), int))
+    assert set(opened.charts(points, "normalized")) == {0, 1}
+    uvs = opened.uv(points, "normalized", np.zeros(len(points), int))
     material, texture = model.document.materials[0], model.document.textures[0]
     expected = base_color(material, decode_image(texture), uvs)
-    np.testing.assert_allclose(opened.color(points, "normalised"), expected, atol=1e-6)
+    np.testing.assert_allclose(opened.color(points, "normalized"), expected, atol=1e-6)
 
 
 def test_project_lands_on_the_surface(model: NispModel, points: np.ndarray) -> None:
-    landed = model.project(points, "normalised")
+    landed = model.project(points, "normalized")
     assert landed.dtype == np.float64
-    assert np.abs(model.sdf(landed, "normalised")).max() < 1e-5
+    assert np.abs(model.sdf(landed, "normalized")).max() < 1e-5
     world = model.project(FRAME.to_world(points))
     np.testing.assert_allclose(world, FRAME.to_world(landed), atol=1e-4)
 
@@ -141,7 +141,7 @@ def test_bad_points_are_refused(
 
 
 def test_unknown_frame_is_refused(model: NispModel) -> None:
-    with pytest.raises(QueryError, match="world, normalised"):
+    with pytest.raises(QueryError, match="world, normalized"):
         model.sdf(np.zeros((1, 3)), "local")
 
 
@@ -189,8 +189,8 @@ def test_error_sets_the_size_of_the_mesh(model: NispModel) -> None:
     coarse, fine = ball.to_mesh(64, error=2e-3), ball.to_mesh(64, error=4e-4)
     assert 2 * len(coarse.faces) < len(fine.faces) < 10_000
     for mesh, error in ((coarse, 2e-3), (fine, 4e-4)):
-        centres = ball.sdf(mesh.corners.mean(axis=1)) / ball.document.frame.radius
-        assert 0.2 * error < np.abs(centres).mean() < 2 * error
+        centers = ball.sdf(mesh.corners.mean(axis=1)) / ball.document.frame.radius
+        assert 0.2 * error < np.abs(centers).mean() < 2 * error
 
 
 def test_mesh_of_charts_without_uv() -> None:

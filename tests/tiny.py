@@ -37,7 +37,7 @@ def sphere(radius: float = 0.6, width: int = 512, seed: int = 0) -> Network:
     weight = rng.normal(size=(width, 3)).astype(np.float32)
     bias = rng.uniform(-1, 1, width).astype(np.float32)
     points = rng.uniform(-1.05, 1.05, (8000, 3))
-    # The cusp of the distance at the centre would spoil the fit on the surface.
+    # The cusp of the distance at the center would spoil the fit on the surface.
     points = points[np.linalg.norm(points, axis=1) > 0.3]
     features = np.column_stack([np.sin(3.0 * (points @ weight.T + bias)), np.ones(len(points))])
     wanted = np.linalg.norm(points, axis=1) - radius

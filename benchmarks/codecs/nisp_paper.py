@@ -1,4 +1,4 @@
-"""`.nisp` with the paper's networks, losses and optimiser, whole and pruned."""
+"""`.nisp` with the paper's networks, losses and optimizer, whole and pruned."""
 
 from __future__ import annotations
 

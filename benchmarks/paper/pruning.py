@@ -50,7 +50,7 @@ Record = dict[str, Any]
 
 
 def paper_networks(path: Path, steps: int) -> list[Task]:
-    """The chart and the UV network with the paper's losses, optimiser and rates."""
+    """The chart and the UV network with the paper's losses, optimizer and rates."""
     sampler = Sampler(load_mesh(path), SEED)
     samples, surface = sampler.importance(SAMPLES), sampler.surface(TEST)
     sets = TrainingSets(samples, samples, sampler.near(1, SKIN), surface, samples, samples[:0])

@@ -1,4 +1,4 @@
-"""From the points that the main benchmark measured: training time, parameterisation, pictures."""
+"""From the points that the main benchmark measured: training time, parameterization, pictures."""
 
 from __future__ import annotations
 
@@ -48,9 +48,9 @@ def training(store: Store, records: Sequence[Record], differs: str) -> Iterator[
 def distortion(records: Sequence[Record], differs: str) -> Iterator[Comparison]:
     """max(sigma_max, 1 / sigma_min) over triangles (table 1)."""
     for what, (side, statistic, published) in DISTORTION.items():
-        values = [record["metrics"]["parameterisation"][side][statistic] for record in records]
+        values = [record["metrics"]["parameterization"][side][statistic] for record in records]
         yield Comparison(
-            "Distortion of the parameterisation (table 1)",
+            "Distortion of the parameterization (table 1)",
             what,
             published,
             float(np.mean(values)),

@@ -48,7 +48,7 @@ def page(results: Record, store: Store) -> str:
 
 
 def head(results: Record, assets: Sequence[str]) -> str:
-    """Where and with what it was measured, and the key of the colours."""
+    """Where and with what it was measured, and the key of the colors."""
     machine, versions = results["machine"], results["versions"]
     where = f"{machine['processor']}, {machine['cores']} cores, {machine['system']}"
     libraries = ", ".join(f"{name} {version}" for name, version in versions.items())
@@ -61,7 +61,7 @@ def head(results: Record, assets: Sequence[str]) -> str:
     return (
         f"<p>{escape(where)}; {escape(libraries)}; commit {escape(', '.join(commits))}; "
         f"seeds {results['seeds']}, {results['samples']:,} samples each way.</p>"
-        "<p>Distances are in the normalised frame (bounding-box centre at 0, farthest vertex at "
+        "<p>Distances are in the normalized frame (bounding-box center at 0, farthest vertex at "
         "radius 1), the larger of both directions; of the original only what can be seen from "
         "outside counts. Bytes are those of the file, without textures.</p>"
         f'<p class="key">{key}</p><p>{links}</p>'

@@ -21,7 +21,7 @@ STEP = 2e-3
 
 
 def further_slots(model: NispModel) -> tuple[str, ...]:
-    """The slots besides the base colour for which a material has a map."""
+    """The slots besides the base color for which a material has a map."""
     materials = model.document.materials
     return tuple(slot for slot in SLOTS[1:] if any(slot in each.maps for each in materials))
 

@@ -22,7 +22,7 @@ def rebaked(model: NispModel, mesh: TexturedMesh, size: int = 1024) -> TexturedM
     """The mesh with one material: textures of `size` x `size` texels for the model's maps.
 
     `mesh`, in the world frame, has an atlas of its own: every face with UVs in [0, 1], none over
-    another. Texels outside the atlas take the colour of the nearest texel inside, so that no
+    another. Texels outside the atlas take the color of the nearest texel inside, so that no
     filter and no mip level bleeds. Raises MeshError when faces have no UVs or the size is not
     16 to 8192.
     """

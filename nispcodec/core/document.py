@@ -15,17 +15,17 @@ from nispcodec.core.network import MAX_CHARTS, Network
 
 @dataclass(frozen=True)
 class Frame:
-    """From the normalised frame to the world: world = normalised * radius + center."""
+    """From the normalized frame to the world: world = normalized * radius + center."""
 
     center: tuple[float, float, float]
     radius: float
 
     def to_world(self, points: FloatArray) -> Float64Array:
-        """(n, 3) normalised -> (n, 3) world."""
+        """(n, 3) normalized -> (n, 3) world."""
         return np.asarray(points, dtype=np.float64) * self.radius + np.asarray(self.center)
 
-    def to_normalised(self, points: FloatArray) -> Float64Array:
-        """(n, 3) world -> (n, 3) normalised."""
+    def to_normalized(self, points: FloatArray) -> Float64Array:
+        """(n, 3) world -> (n, 3) normalized."""
         return (np.asarray(points, dtype=np.float64) - np.asarray(self.center)) / self.radius
 
 
@@ -53,7 +53,7 @@ class Document:
     """One decoded container.
 
     sdf is always there; chart only when there are two charts or more; uv only when some chart has
-    UV. `half_thickness` (normalised frame) is given to open surfaces, 0 when there are none;
+    UV. `half_thickness` (normalized frame) is given to open surfaces, 0 when there are none;
     with it the surface has parts as thin as twice this.
     `info` holds what was measured and how the file was made: plain str, int, float and bool values.
     `extra` holds the ancillary sections that this version does not know, by four-character code:

@@ -33,7 +33,7 @@ MAX_ROW_SHIFT = 7
 
 @dataclass(frozen=True)
 class NetworkSpec:
-    """Topology of one multilayer perceptron from a point in the normalised frame to `outputs`.
+    """Topology of one multilayer perceptron from a point in the normalized frame to `outputs`.
 
     encoding     "identity": x; "fourier": for each coordinate p, sin(2^i pi p), cos(2^i pi p) for
                  i = 0 ... levels-1 (paper, eq. 7), coordinate after coordinate
@@ -146,7 +146,7 @@ class NetworkSpec:
 class Network:
     """A spec with its weights: float32 arrays by the names and shapes of `spec.shapes`.
 
-    `steps` names the tensors that are quantised, with their quantisation step: such a tensor is
+    `steps` names the tensors that are quantized, with their quantization step: such a tensor is
     float32(symbol) * float32(step) for integer symbols.
     """
 

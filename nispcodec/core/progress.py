@@ -14,7 +14,7 @@ class Progress:
     stage         what is being done, in a word or two
     step, steps   how far it is
     loss          training loss, smoothed
-    error         held-out error: sdf mean distance (normalised), chart share of wrong labels,
+    error         held-out error: sdf mean distance (normalized), chart share of wrong labels,
                   uv mean distance in the network's [0, 1]^2 given the true chart
     seconds_left  estimate for this network
     note          something worth a line of its own, such as a retry

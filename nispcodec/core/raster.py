@@ -23,7 +23,7 @@ class Texels:
 
 
 def texels(corner_uvs: Float64Array, height: int, width: int) -> Texels:
-    """Every texel of an image whose centre a face covers; the last face where several do.
+    """Every texel of an image whose center a face covers; the last face where several do.
 
     corner_uvs (m, 3, 2), v upwards, within [0, 1].
     """
@@ -37,7 +37,7 @@ def texels(corner_uvs: Float64Array, height: int, width: int) -> Texels:
 
 
 def coverage(corner_uvs: Float64Array, height: int, width: int) -> BoolArray:
-    """(height, width): which texels' centres a face covers; corner_uvs as `texels` has them."""
+    """(height, width): which texels' centers a face covers; corner_uvs as `texels` has them."""
     covered = np.zeros((height, width), np.bool_)
     for rows, columns, _, _ in _covered(corner_uvs, height, width):
         covered[rows, columns] = True
@@ -45,7 +45,7 @@ def coverage(corner_uvs: Float64Array, height: int, width: int) -> BoolArray:
 
 
 def padded(image: Uint8Array, covered: BoolArray) -> Uint8Array:
-    """The image (h, w, c) with the nearest covered texel's colour wherever none is covered."""
+    """The image (h, w, c) with the nearest covered texel's color wherever none is covered."""
     from scipy.ndimage import distance_transform_edt
 
     if not covered.any():

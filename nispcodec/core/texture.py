@@ -1,4 +1,4 @@
-"""Textures as arrays: decode an image file's bytes and look colours up by UV.
+"""Textures as arrays: decode an image file's bytes and look colors up by UV.
 
 The one sampler of the package: queries, metrics and pictures must agree on it to the last bit.
 """
@@ -39,7 +39,7 @@ _BROKEN = (OSError, ValueError, SyntaxError, EOFError, struct.error)
 def decode_image(texture: Texture) -> Float32Array:
     """The texture's pixels: (h, w, 4) float32 in [0, 1], RGBA as stored, top row first.
 
-    Grey, palette and 16-bit images are widened; an image without alpha gets alpha 1.
+    Gray, palette and 16-bit images are widened; an image without alpha gets alpha 1.
     Raises MeshError, naming the texture, for bytes that are no image and for more pixels than
     Pillow's limit of 89 million.
     """
@@ -105,9 +105,9 @@ def sample_texture(
     wrap: tuple[str, str] = ("repeat", "repeat"),
     filter: str = "linear",
 ) -> Float32Array:
-    """Colours (n, c) float32 of an (h, w, c) image at (n, 2) finite UVs, origin bottom-left.
+    """Colors (n, c) float32 of an (h, w, c) image at (n, 2) finite UVs, origin bottom-left.
 
-    Texel centres lie at half-integers, as in OpenGL and glTF; `wrap` and `filter` are those of
+    Texel centers lie at half-integers, as in OpenGL and glTF; `wrap` and `filter` are those of
     `TextureMap`. Never filters between mip levels.
     """
     height, width = image.shape[:2]
@@ -126,9 +126,9 @@ def sample_texture(
 
 
 def base_color(material: Material, image: Float32Array | None, uv: FloatArray) -> Float32Array:
-    """Base colour (n, 4) float32 at (n, 2) UVs: sRGB-encoded RGB and linear alpha, in [0, 1].
+    """Base color (n, 4) float32 at (n, 2) UVs: sRGB-encoded RGB and linear alpha, in [0, 1].
 
-    `image` holds the pixels of the material's base-colour map, None when it has none. The factor
+    `image` holds the pixels of the material's base-color map, None when it has none. The factor
     is linear (glTF 2.0, 3.9.2), so texels are decoded, multiplied and encoded again.
     """
     factor = np.asarray(material.base_color, dtype=np.float32)
@@ -149,7 +149,7 @@ def base_colors(
     has_uv: BoolArray,
     uv: FloatArray,
 ) -> Float32Array:
-    """Base colours (n, 4) at (n, 2) UVs of the materials `owners` (n,), as `base_color`.
+    """Base colors (n, 4) at (n, 2) UVs of the materials `owners` (n,), as `base_color`.
 
     Where `has_uv` (n,) is False the material shows its factor alone.
     """
@@ -177,9 +177,9 @@ def linear_to_srgb(values: Float32Array) -> Float32Array:
 
 
 def _to_rgba(image: PIL.Image.Image) -> Float32Array:
-    if image.mode.startswith("I"):  # Pillow clips 16-bit grey to 255 when converting
-        grey = np.asarray(image, dtype=np.float32)[..., None] / np.float32(65535)
-        return np.concatenate([grey, grey, grey, np.ones_like(grey)], axis=2)
+    if image.mode.startswith("I"):  # Pillow clips 16-bit gray to 255 when converting
+        gray = np.asarray(image, dtype=np.float32)[..., None] / np.float32(65535)
+        return np.concatenate([gray, gray, gray, np.ones_like(gray)], axis=2)
     return np.asarray(image.convert("RGBA"), dtype=np.float32) / np.float32(255)
 
 

@@ -12,7 +12,7 @@ from scipy.spatial import cKDTree
 from nispcodec.core.arrays import Float32Array
 
 REACH = 0.075
-"""The nearest sample on the right side is sought no further away than this (normalised frame)."""
+"""The nearest sample on the right side is sought no further away than this (normalized frame)."""
 
 
 def reaches(

@@ -8,7 +8,7 @@ from nispcodec.dataset.sample_set import SampleSet
 from nispcodec.dataset.sampler import BETA, Sampler
 
 TIGHT = 1 / 300
-"""Mean distance (normalised frame) of the samples that sharpen the zero set."""
+"""Mean distance (normalized frame) of the samples that sharpen the zero set."""
 
 WIDE = 1 / 12
 """Mean distance of the samples for the insides of bodies, of which the cube's are few."""
@@ -66,7 +66,7 @@ def training_sets(sampler: Sampler) -> TrainingSets:
     """Near the surface for the most part; the whole cube for the sign far away.
 
     UVs learn from some points again where the texture has detail, charts where they show different
-    colours.
+    colors.
     """
     distance = (
         sampler.near(NEAR_COUNT, 1 / BETA),

@@ -1,4 +1,4 @@
-"""Labelled training points: where they lie, how far from the surface, on which chart, which UV."""
+"""Labeled training points: where they lie, how far from the surface, on which chart, which UV."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from nispcodec.core.arrays import BoolArray, Float32Array, Int32Array, IntArray
 
 @dataclass(frozen=True)
 class SampleSet:
-    """n labelled points, normalised frame: points (n, 3), sdf (n,), chart (n,), uv (n, 2).
+    """n labeled points, normalized frame: points (n, 3), sdf (n,), chart (n,), uv (n, 2).
 
     uv is the UV network's target: the asset's UV mapped to [0, 1] by the chart table, (0, 0) on
     charts without UV.

@@ -42,10 +42,10 @@ TINY = 1e-12
 """A share of the area that is none."""
 
 THIN = 4e-3
-"""What ends less than a quarter of this deeper than it (normalised frame) is thin."""
+"""What ends less than a quarter of this deeper than it (normalized frame) is thin."""
 
 MEMBRANE_JITTER = 5e-3
-"""How far off a membrane (normalised frame) a network may put it."""
+"""How far off a membrane (normalized frame) a network may put it."""
 
 
 class Sampler:
@@ -58,9 +58,9 @@ class Sampler:
 
     def __init__(self, mesh: TexturedMesh, seed: int, gap: float = 0.0) -> None:
         self._mesh = mesh
-        self.frame = normalising_frame(mesh)
+        self.frame = normalizing_frame(mesh)
         self._random = np.random.default_rng(seed)
-        self._corners = self.frame.to_normalised(mesh.corners)
+        self._corners = self.frame.to_normalized(mesh.corners)
         self._uvs = mesh.corner_uvs
         self.solid = build_solid(self._corners)
         self.field = DistanceField(self.solid)
@@ -204,8 +204,8 @@ class Sampler:
         points, piece = self._surface(MERGE_POINTS)
         chart = self.charts.face_charts[self.solid.parents]
         rare = np.bincount(chart[piece], minlength=len(self.charts))[chart] < MERGE_RARE
-        centres = self._raised(self.solid.pieces[rare].mean(axis=1), np.flatnonzero(rare))
-        points = np.concatenate([points, centres])
+        centers = self._raised(self.solid.pieces[rare].mean(axis=1), np.flatnonzero(rare))
+        points = np.concatenate([points, centers])
         surface = self.label(points, signed=False)
         seen, uvs = folded(points, self.mirrors.uv), surface.uv.astype(np.float64)
         cover = Cover(points, surface.chart, seen, uvs)
@@ -220,8 +220,8 @@ class Sampler:
         return np.where(has_uv[:, None], scaled, 0.0).astype(np.float32)
 
 
-def normalising_frame(mesh: TexturedMesh) -> Frame:
-    """Bounding-box centre to 0, farthest vertex to radius 1; only vertices of faces count."""
+def normalizing_frame(mesh: TexturedMesh) -> Frame:
+    """Bounding-box center to 0, farthest vertex to radius 1; only vertices of faces count."""
     used = mesh.positions[np.unique(mesh.faces)]
     center = (used.min(axis=0) + used.max(axis=0)) / 2
     radius = float(np.linalg.norm(used - center, axis=1).max())

@@ -11,13 +11,13 @@ from nispcodec.core.texture import base_color, decode_image
 from nispcodec.dataset.sample_set import SampleSet
 
 NEARBY = 2e-3
-"""How far off in UV colours are compared: a few times as far as UV networks err."""
+"""How far off in UV colors are compared: a few times as far as UV networks err."""
 
 WAYS = NEARBY * np.array([(1, 0), (0, 1), (-1, 0), (0, -1)])
 
 
 def detail(mesh: TexturedMesh, table: ChartTable, samples: SampleSet) -> Float64Array:
-    """(n,) root mean square change of colour and alpha `NEARBY`; 0 where there is no texture."""
+    """(n,) root mean square change of color and alpha `NEARBY`; 0 where there is no texture."""
     uvs = samples.uv * np.asarray(table.uv_scale) + np.asarray(table.uv_offset)
     owners = np.where(table.has_uv, table.materials, -1)[samples.chart]
     found = np.zeros(len(samples))

@@ -1,4 +1,4 @@
-"""Textures whose gutters, what lies between the charts of the atlas, have no colour of their own.
+"""Textures whose gutters, what lies between the charts of the atlas, have no color of their own.
 
 The seams and UVs of a decoded surface are a little off: along a seam it shows some of the gutter.
 """
@@ -19,7 +19,7 @@ EDGE = 1e-6
 
 
 def with_padded_gutters(mesh: TexturedMesh, quality: int) -> tuple[Texture, ...]:
-    """The mesh's textures with the nearest used texel's colour where no face lies.
+    """The mesh's textures with the nearest used texel's color where no face lies.
 
     Formats and names stay; `quality`, 1 to 100, is for those that lose something. An image that no
     face uses, or that one repeats, stays as it is.

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 PRESETS = ("balanced", "paper", "fast", "best")
 GAP = 0.1
-"""Charts some times further apart than this (normalised frame) share numbers; not in `paper`."""
+"""Charts some times further apart than this (normalized frame) share numbers; not in `paper`."""
 
 UNSEEN = 1e-7
 """A share of the radius that nobody sees: a thousandth of what evaluators may differ by."""
@@ -42,12 +42,12 @@ class EncodeConfig:
     seed            of everything random: the same input, seed and threads give the same bytes
     device          "auto", "cpu", "cuda"
     threads         cores to use; 0: all
-    pad_textures    fills what no face uses of an image with the colours beside it
+    pad_textures    fills what no face uses of an image with the colors beside it
     texture_format  None keeps the image files as they are; "webp", "avif", "jpeg" re-encode them
     texture_quality 1 to 100, for a `texture_format` and for images that are padded
     textures        False leaves the images out
     target_size     bytes of the file without its textures; the networks are made to fit
-    target_error    mean distance to the surface (normalised frame); the SDF is made to fit
+    target_error    mean distance to the surface (normalized frame); the SDF is made to fit
     prune           None, "smallest", "smallest_global" or "large_final": lottery tickets
     prune_rate      share of weights to prune, 0 to below 1; or by network: {"sdf": 0.3, "uv": 0.5}
     prune_rounds    in which the rate is reached: each takes as long as an encode
@@ -214,7 +214,7 @@ def _measured(
 
     model = NispModel(document)
     near, skin = sets.held_distance, sets.held_skin
-    distance = np.abs(model.sdf(near.points, frame="normalised") - near.sdf)
+    distance = np.abs(model.sdf(near.points, frame="normalized") - near.sdf)
     measured: dict[str, str | int | float | bool] = {
         "preset": config.preset,
         "seed": config.seed,
@@ -222,12 +222,12 @@ def _measured(
         "open_surface_share": _short(sampler.solid.open_surface_share),
         "distance_error": _short(distance.mean()),
     }
-    charts = model.charts(skin.points, frame="normalised")
+    charts = model.charts(skin.points, frame="normalized")
     if document.chart is not None:
         measured["chart_accuracy"] = _short((charts == skin.chart).mean())
     if document.uv is not None:
         wanted = skin.uv * document.charts.uv_scale + document.charts.uv_offset
-        off = np.linalg.norm(model.uv(skin.points, "normalised", charts) - wanted, axis=1)
+        off = np.linalg.norm(model.uv(skin.points, "normalized", charts) - wanted, axis=1)
         measured["uv_error_median"] = _short(np.median(off))
         measured["uv_error_mean"] = _short(off.mean())
     return measured

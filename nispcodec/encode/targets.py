@@ -40,7 +40,7 @@ SLOPE, SLOPES = 0.7, (0.3, 1.5)
 
 ROUNDS = 5
 LEAST_ERROR = 2e-5
-"""Samples, float32 and the extracted mesh are good for no less (normalised frame)."""
+"""Samples, float32 and the extracted mesh are good for no less (normalized frame)."""
 
 
 @dataclass(frozen=True)

@@ -1,7 +1,7 @@
 """Which pieces of an extracted surface are real, and which are noise of the fitted field.
 
 A fitted SDF may cross zero where there is no surface, far from its training samples. Such a
-crossing gives itself away: it lies outside the normalised frame's unit ball, or the field around it
+crossing gives itself away: it lies outside the normalized frame's unit ball, or the field around it
 is no distance field and it is steep, or tiny and far from everything else. Tiny pieces beside
 others are what is left of straps and wires, but for crumbs of a single cell. A small hollow that
 nothing leads into is dropped as well: nobody can see into it.
@@ -117,9 +117,9 @@ def _lonely(surface: Surface, labels: Int32Array, specks: BoolArray) -> BoolArra
     near = np.isfinite(KDTree(others).query(points, distance_upper_bound=LONELY)[0])
     counts = np.maximum(np.bincount(members, minlength=len(specks)), 1)
     sums = [np.bincount(members, axis, len(specks)) for axis in points.T]
-    centres = np.stack(sums, axis=1)[specks] / counts[specks, None]
-    # The nearest centre is a speck's own.
-    gaps = KDTree(centres).query(centres, k=2)[0][:, 1]
+    centers = np.stack(sums, axis=1)[specks] / counts[specks, None]
+    # The nearest center is a speck's own.
+    gaps = KDTree(centers).query(centers, k=2)[0][:, 1]
     lonely = specks.copy()
     lonely[members[near]] = False
     lonely[np.flatnonzero(specks)[gaps <= LONELY]] = False

@@ -1,7 +1,7 @@
 """The field on the grid points of blocks, each point evaluated once however many blocks share it.
 
 Blocks have numbers, in the order in which they are met. A block owns its BLOCK^3 lower points and
-takes the others from its upper neighbours, kept or not, so that a point has one value, bit for bit,
+takes the others from its upper neighbors, kept or not, so that a point has one value, bit for bit,
 or the surface would crack.
 """
 
@@ -15,7 +15,7 @@ from nispcodec.extract.marching_cubes import CORNERS
 from nispcodec.infer.evaluate import evaluate
 from nispcodec.infer.parallel import on_every_core
 
-# The cube reaches from -LIMIT to LIMIT in the normalised frame.
+# The cube reaches from -LIMIT to LIMIT in the normalized frame.
 LIMIT = 1.02
 BLOCK = 2
 # Blocks, or points, that are dealt with at a time: it bounds memory and stays in a core's cache.
@@ -90,7 +90,7 @@ class Grid:
 
 
 def _taken(corner: Int64Array) -> tuple[slice, ...]:
-    """Of the points that the neighbour at `corner` owns, those that its lower neighbour takes."""
+    """Of the points that the neighbor at `corner` owns, those that its lower neighbor takes."""
     return tuple(slice(1) if c else slice(None) for c in corner)
 
 

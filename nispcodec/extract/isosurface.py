@@ -2,7 +2,7 @@
 
 Blocks of the cube are kept, coarse to fine, while the field says that the surface may pass through
 them; the field is then sampled on the grid points of the kept blocks only, and of those that the
-surface goes on into; it is polygonised, and the vertices are moved onto the zero set.
+surface goes on into; it is polygonized, and the vertices are moved onto the zero set.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from nispcodec.core.arrays import (
 )
 from nispcodec.core.network import Network
 from nispcodec.extract.grid import BLOCK, LIMIT, Grid, together
-from nispcodec.extract.marching_cubes import CORNERS, EDGES, polygonise
+from nispcodec.extract.marching_cubes import CORNERS, EDGES, polygonize
 from nispcodec.extract.newton import onto_surface
 from nispcodec.infer.evaluate import evaluate, gradient
 from nispcodec.infer.parallel import on_every_core
@@ -43,7 +43,7 @@ AXES = np.array([axis for _, axis in EDGES], np.int8)
 
 @dataclass(frozen=True)
 class Surface:
-    """positions (n, 3) float32, normalised frame; faces (m, 3) int32; cell: the grid's spacing."""
+    """positions (n, 3) float32, normalized frame; faces (m, 3) int32; cell: the grid's spacing."""
 
     positions: Float32Array
     faces: Int32Array
@@ -51,7 +51,7 @@ class Surface:
 
 
 def extract(network: Network, resolution: int) -> Surface:
-    """The zero set of the SDF network in the cube [-1.02, 1.02]^3 of the normalised frame.
+    """The zero set of the SDF network in the cube [-1.02, 1.02]^3 of the normalized frame.
 
     `resolution` is the least number of cells along an edge of the cube: it is rounded up, by an
     eighth at most, so that blocks halve evenly and none reaches out of the cube.
@@ -65,10 +65,10 @@ def extract(network: Network, resolution: int) -> Surface:
 
 
 def near_surface(network: Network, resolution: int) -> tuple[Float32Array, float]:
-    """Centres (b, 3) of the blocks that `extract` would look into, and the blocks' size."""
+    """Centers (b, 3) of the blocks that `extract` would look into, and the blocks' size."""
     root, levels, cell = _grid(resolution)
     blocks = _surface_blocks(network, root, levels, cell)
-    return _centres(blocks, BLOCK * cell), BLOCK * cell
+    return _centers(blocks, BLOCK * cell), BLOCK * cell
 
 
 def _grid(resolution: int) -> tuple[int, int, float]:
@@ -82,28 +82,28 @@ def _grid(resolution: int) -> tuple[int, int, float]:
 def _surface_blocks(network: Network, root: int, levels: int, cell: float) -> Int64Array:
     """Integer coordinates (b, 3) of the blocks of BLOCK^3 cells that may hold surface.
 
-    A block is halved and kept while the field at its centre is no larger than it may become over
+    A block is halved and kept while the field at its center is no larger than it may become over
     half the block's diagonal, and a margin; at the end, over half its edge: a surface that passes
-    between the centres of two blocks is that close to one of them, and from there it is followed.
+    between the centers of two blocks is that close to one of them, and from there it is followed.
     How fast the field may grow is measured anew among the blocks of each level: far from the
     surface a fitted field is steeper than near it.
     """
     blocks = _lattice(root)
     for level in range(levels, -1, -1):
         size = cell * BLOCK * 2**level
-        centres = _centres(blocks, size)
+        centers = _centers(blocks, size)
         if level == levels:
-            bound = _steepness(network, centres)
-        distance = np.abs(evaluate(network, centres)[:, 0])
+            bound = _steepness(network, centers)
+        distance = np.abs(evaluate(network, centers)[:, 0])
         near = distance <= bound * size / 2 * (MARGIN * np.sqrt(3) if level else 1)
         blocks = blocks[near]
         if level:
-            bound = _steepness(network, centres[near])
+            bound = _steepness(network, centers[near])
             blocks = (2 * blocks[:, None] + CORNERS).reshape(-1, 3)
     return blocks
 
 
-def _centres(blocks: Int64Array, size: float) -> Float32Array:
+def _centers(blocks: Int64Array, size: float) -> Float32Array:
     return ((blocks + 0.5) * size - LIMIT).astype(np.float32)
 
 
@@ -143,10 +143,10 @@ def _behind(grid: Grid, blocks: Int64Array, values: Float32Array) -> Int64Array:
     for axis in range(3):
         for side, step in ((0, -1), (BLOCK, 1)):
             face = _bits(corners[:, axis] == side)
-            neighbours = blocks[(inside & face != 0) & (inside & face != face)]
-            neighbours[:, axis] += step
-            place = neighbours[:, axis]
-            beyond.append(neighbours[(place >= 0) & (place < grid.across)])
+            neighbors = blocks[(inside & face != 0) & (inside & face != face)]
+            neighbors[:, axis] += step
+            place = neighbors[:, axis]
+            beyond.append(neighbors[(place >= 0) & (place < grid.across)])
     wanted = np.concatenate(beyond)
     cube = (grid.across,) * 3
     missing = np.unique(np.ravel_multi_index(tuple(wanted[~grid.has_sampled(wanted)].T), cube))
@@ -191,7 +191,7 @@ def _triangles(values: Float32Array) -> tuple[Int64Array, Int8Array]:
     """Triangles' edges (t, 3): where their low ends are in the values of all blocks, their axes."""
     cases = _cases(values)
     cells = np.flatnonzero((cases > 0) & (cases < 255))
-    owners, edges = polygonise(cases[cells])
+    owners, edges = polygonize(cases[cells])
     return _first_corners(cells)[owners, None] + LOW_ENDS[edges], AXES[edges]
 
 

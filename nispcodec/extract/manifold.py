@@ -38,8 +38,8 @@ def _apart(surface: Surface, twins: Twins) -> Surface:
     shared = np.bincount(origins)[origins] > 1
     sums = np.zeros(positions.shape)
     np.add.at(sums, faces.ravel(), np.repeat(positions[faces].mean(axis=1), 3, axis=0))
-    centres = sums / np.bincount(faces.ravel())[:, None]
-    drawn = np.where(shared[:, None], positions + RETREAT * (centres - positions), positions)
+    centers = sums / np.bincount(faces.ravel())[:, None]
+    drawn = np.where(shared[:, None], positions + RETREAT * (centers - positions), positions)
     return Surface(drawn.astype(np.float32), faces, surface.cell)
 
 
@@ -72,8 +72,8 @@ def _halved(surface: Surface, twins: Int64Array) -> Surface:
     faces = np.vstack([np.delete(surface.faces, touched, axis=0), *pieces]).astype(np.int32)
     corners = surface.positions[surface.faces[twins // 3]]
     ends = np.stack([corners[:, 0][np.arange(len(twins)), (twins[:, 0] + i) % 3] for i in (0, 1)])
-    middle, centres = ends.mean(axis=0), corners.mean(axis=(1, 2))
-    new = (middle + RETREAT * (centres - middle)).astype(np.float32)
+    middle, centers = ends.mean(axis=0), corners.mean(axis=(1, 2))
+    new = (middle + RETREAT * (centers - middle)).astype(np.float32)
     return Surface(np.vstack([surface.positions, new]), faces, surface.cell)
 
 

@@ -34,7 +34,7 @@ def triangle_table() -> tuple[Int8Array, Int64Array]:
     return np.array(triangles, np.int8), np.array(starts)
 
 
-def polygonise(cases: Uint8Array) -> tuple[Int64Array, Int8Array]:
+def polygonize(cases: Uint8Array) -> tuple[Int64Array, Int8Array]:
     """Triangles of many cells: cases (n,) -> cell of each triangle (t,), its edges (t, 3)."""
     table, starts = triangle_table()
     counts = (starts[1:] - starts[:-1])[cases]
@@ -82,7 +82,7 @@ def _loops(case: int) -> list[list[int]]:
 def _triangulated(loop: list[int]) -> list[tuple[int, int, int]]:
     """Fan of the loop from the vertex whose chords stay off the cell's faces.
 
-    A chord in a face could also be drawn by the neighbour: four triangles would meet at it.
+    A chord in a face could also be drawn by the neighbor: four triangles would meet at it.
     """
     count = len(loop)
     for start in range(count):

@@ -46,7 +46,7 @@ def textured_mesh(
     The mesh's warnings tell what was dropped.
     resolution: cells along the cube's edge, see `default_resolution`; faces: the most triangles
     that the mesh may have, seams included; error: as few triangles as keep the mean distance to the
-    field's surface below it (normalised frame); keep_spurious: do not drop noise of the field.
+    field's surface below it (normalized frame); keep_spurious: do not drop noise of the field.
     """
     surface, report = _surface(document, resolution, error, keep_spurious)
     if error is not None:

@@ -12,7 +12,7 @@ from nispcodec.infer.parallel import on_every_core
 
 
 def onto_surface(network: Network, points: Float32Array, reach: float, steps: int) -> Float32Array:
-    """Points (n, 3) float32, normalised frame, after Newton steps along the field's gradient.
+    """Points (n, 3) float32, normalized frame, after Newton steps along the field's gradient.
 
     The gradient is taken once, at the start: the points are near the surface already. A step is
     taken only where it brings the field nearer to 0, and no point moves farther than `reach` along

@@ -80,8 +80,8 @@ def _borders(
 
 
 def _middles(sdf: Network, positions: Float32Array, cuts: Int32Array, cell: float) -> Float32Array:
-    centres = positions[cuts].mean(axis=1, dtype=np.float32)
-    return onto_surface(sdf, centres, cell / 2, steps=1)
+    centers = positions[cuts].mean(axis=1, dtype=np.float32)
+    return onto_surface(sdf, centers, cell / 2, steps=1)
 
 
 def _cut_in_two(

@@ -65,7 +65,7 @@ def simplest(network: Network, surface: Surface, error: float) -> Surface:
 
 
 def deviation(network: Network, surface: Surface) -> float:
-    """Mean distance of the triangles to the zero set, area-weighted, normalised frame.
+    """Mean distance of the triangles to the zero set, area-weighted, normalized frame.
 
     The field's value at centroids and at the middles of edges stands for the distance.
     """

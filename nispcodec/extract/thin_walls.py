@@ -17,7 +17,7 @@ def thin_share(network: Network, points: Float32Array, reach: float, depth: floa
     """The share of the surface near `points` (n, 3) behind which there is no `depth` of solid.
 
     The points are moved onto the surface, by at most `reach` along an axis, and from there on by
-    `depth` inwards: where that leads out again, the wall is thinner. All in the normalised frame.
+    `depth` inwards: where that leads out again, the wall is thinner. All in the normalized frame.
     The points come from the field's values, so walls that a grid's corners miss count as well.
     """
     moved = onto_surface(network, points, reach, STEPS)

@@ -11,7 +11,7 @@ from nispcodec.core.network import Network
 from nispcodec.extract.isosurface import Surface
 from nispcodec.infer.evaluate import classify
 
-# Area, in the normalised frame, below which a patch of one chart is a mistake of the field.
+# Area, in the normalized frame, below which a patch of one chart is a mistake of the field.
 SPECK_AREA = 1.2e-4
 SPECK_VERTICES = 2
 ROUNDS = 3
@@ -36,7 +36,7 @@ def _links(faces: Int32Array) -> Int64Array:
 
 
 def _without_specks(charts: Int32Array, edges: Int64Array, least: int) -> Int32Array:
-    """Patches of one chart with fewer than `least` vertices take the chart of most neighbours."""
+    """Patches of one chart with fewer than `least` vertices take the chart of most neighbors."""
     a, b = edges.T
     same = charts[a] == charts[b]
     size = len(charts)

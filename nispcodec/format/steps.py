@@ -1,4 +1,4 @@
-"""A quantisation step in the fewest bytes: none if as before, one byte, float16 or float32.
+"""A quantization step in the fewest bytes: none if as before, one byte, float16 or float32.
 
 Where rows matter more or less, symbols of a row are multiples of a power of two: its row shift.
 """

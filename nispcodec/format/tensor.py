@@ -15,7 +15,7 @@ from nispcodec.format.constants import MAX_SYMBOL
 
 @dataclass(frozen=True)
 class Tensor:
-    """Its step, if it is quantised; its weights or symbols; its initial weights.
+    """Its step, if it is quantized; its weights or symbols; its initial weights.
 
     matrix  (rows, columns) float32 weights, or int32 symbols
     initial (rows, columns) integers of `nispcodec.core.initial_weights`

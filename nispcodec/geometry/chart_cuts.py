@@ -20,7 +20,7 @@ from nispcodec.geometry.charts import Charts, colored, connected_faces, row_ids,
 def split_self_seams(mesh: TexturedMesh, charts: Charts) -> Charts:
     """The charts, with those that meet themselves cut so that no seam has one chart on both sides.
 
-    Corners along one side of a seam belong together, corners across it apart: a graph colouring of
+    Corners along one side of a seam belong together, corners across it apart: a graph coloring of
     the sides. Each face goes with the side that is nearest along the surface.
     """
     corners = _corners(mesh, charts)
@@ -75,7 +75,7 @@ def _chart_of_corner(corners: Int64Array, ends: Int64Array) -> IntArray:
 
 
 def _face_colors(mesh: TexturedMesh, corners: Int64Array, seams: _Seams) -> Int64Array:
-    """The colour (m,) of the nearest seam side; 0 on charts that do not meet themselves."""
+    """The color (m,) of the nearest seam side; 0 on charts that do not meet themselves."""
     sources, color = _side_colors(seams)
     distance, nearest = _nearest(mesh, corners, sources)
     of_corner = np.zeros(len(distance), dtype=np.int64)
@@ -87,7 +87,7 @@ def _face_colors(mesh: TexturedMesh, corners: Int64Array, seams: _Seams) -> Int6
 
 
 def _side_colors(seams: _Seams) -> tuple[Int64Array, Int64Array]:
-    """The corners on seams, and colours that differ across every seam edge.
+    """The corners on seams, and colors that differ across every seam edge.
 
     The tip of a seam is the same corner on both sides: it belongs to neither.
     """

@@ -1,6 +1,6 @@
 """Which charts share a number: mirror images, and charts far apart whose UVs go together.
 
-A position tells such charts apart already, so the networks need a number only to keep neighbours
+A position tells such charts apart already, so the networks need a number only to keep neighbors
 apart: some hundred charts become a few dozen labels. Some more make UVs easier to learn.
 """
 
@@ -42,7 +42,7 @@ MANY = 2000
 class Cover:
     """n points on the visible surface, of every chart some: all that merging looks at.
 
-    points       (n, 3) normalised frame
+    points       (n, 3) normalized frame
     charts       (n,) before merging
     coordinates  (n, d) as the UV network sees the points: of mirrored axes the absolute value
     uvs          (n, 2)
@@ -68,11 +68,11 @@ def merge_charts(charts: Charts, cover: Cover, twins: IntArray, gap: float) -> C
     first = np.unique(group, return_index=True)[1]
     kinds = [(int(charts.materials[i]), bool(charts.has_uv[i])) for i in first]
     numbers = group[cover.charts]
-    neighbours = _neighbours(count, cover.points, numbers, gap)
-    _, needed = colored(neighbours, kinds)
+    neighbors = _neighbors(count, cover.points, numbers, gap)
+    _, needed = colored(neighbors, kinds)
     moments = _moments(count, cover, numbers)
     shares = SHARES if count < MANY else SHARES[:1]
-    tried = [_Fits(moments, neighbours, kinds, _more(needed, share)) for share in shares]
+    tried = [_Fits(moments, neighbors, kinds, _more(needed, share)) for share in shares]
     costs = [fits.mean_bits + WORTH * share for fits, share in zip(tried, shares, strict=True)]
     best = tried[int(np.argmin(costs))]
     used, numbered = np.unique(best.labels, return_inverse=True)
@@ -106,15 +106,15 @@ class _Fits:
     def __init__(
         self,
         moments: Float64Array,
-        neighbours: list[set[int]],
+        neighbors: list[set[int]],
         kinds: list[Kind],
         palette: Sequence[Kind],
     ) -> None:
-        self.moments, self.neighbours, self.kinds = moments, neighbours, kinds
+        self.moments, self.neighbors, self.kinds = moments, neighbors, kinds
         most = len(palette) + len(moments)
         self.mixed = np.zeros((most, *moments.shape[1:]))
         self.bits = np.zeros(most)
-        self.labels, self.palette = colored(neighbours, kinds, palette, self._choose)
+        self.labels, self.palette = colored(neighbors, kinds, palette, self._choose)
         sweeps = SWEEPS if len(moments) < MANY else 0
         while sweeps and self._sweep():
             sweeps -= 1
@@ -139,7 +139,7 @@ class _Fits:
         for chart, label in enumerate(before):
             self.mixed[label] -= self.moments[chart]
             self.bits[label] = _bits(self.mixed[label][None])[0]
-            taken = {self.labels[other] for other in self.neighbours[chart]}
+            taken = {self.labels[other] for other in self.neighbors[chart]}
             kind = self.kinds[chart]
             free = [n for n, k in enumerate(self.palette) if k == kind and n not in taken]
             self.labels[chart] = self._choose(chart, free)
@@ -165,21 +165,21 @@ def _groups(count: int, pairs: IntArray) -> Int32Array:
     return labels
 
 
-def _neighbours(count: int, points: Float64Array, charts: IntArray, gap: float) -> list[set[int]]:
+def _neighbors(count: int, points: Float64Array, charts: IntArray, gap: float) -> list[set[int]]:
     """For each of `count` charts, the others that come closer than `gap`.
 
-    Told by cells of that size and their neighbours, so that memory is bounded by the points: some
+    Told by cells of that size and their neighbors, so that memory is bounded by the points: some
     charts up to a few times as far apart count as well.
     """
     cells, cell = np.unique(np.floor(points / gap), axis=0, return_inverse=True)
     shape = (len(cells), count)
     there = coo_matrix((np.ones(len(cell), dtype=bool), (cell.reshape(-1), charts)), shape=shape)
     adjacent = (there.T @ (_near_cells(cells) @ there)).tocoo()
-    neighbours: list[set[int]] = [set() for _ in range(count)]
+    neighbors: list[set[int]] = [set() for _ in range(count)]
     for one, other in zip(adjacent.row.tolist(), adjacent.col.tolist(), strict=True):
         if one != other:
-            neighbours[one].add(other)
-    return neighbours
+            neighbors[one].add(other)
+    return neighbors
 
 
 def _near_cells(cells: Float64Array) -> coo_matrix:

@@ -45,21 +45,21 @@ def split_charts(mesh: TexturedMesh) -> Charts:
 
 
 def colored(
-    neighbours: list[set[int]],
+    neighbors: list[set[int]],
     kinds: list[Kind],
     palette: Sequence[Kind] = (),
     choose: Callable[[int, Sequence[int]], int] = lambda node, colors: colors[0],
 ) -> tuple[list[int], list[Kind]]:
-    """Colour a graph so that neighbours differ and every colour is of one kind.
+    """Color a graph so that neighbors differ and every color is of one kind.
 
-    Returns each node's colour and each colour's kind: those of the `palette` to begin with, and one
-    more whenever no other is left; of several `choose(node, colours)` takes one. Most constrained
+    Returns each node's color and each color's kind: those of the `palette` to begin with, and one
+    more whenever no other is left; of several `choose(node, colors)` takes one. Most constrained
     node first (Welsh and Powell 1967).
     """
-    color = [-1] * len(neighbours)
+    color = [-1] * len(neighbors)
     kind_of_color = list(palette)
-    for node in sorted(range(len(neighbours)), key=lambda n: -len(neighbours[n])):
-        taken = {color[other] for other in neighbours[node]}
+    for node in sorted(range(len(neighbors)), key=lambda n: -len(neighbors[n])):
+        taken = {color[other] for other in neighbors[node]}
         alike = [c for c, k in enumerate(kind_of_color) if k == kinds[node] and c not in taken]
         if not alike:
             alike = [len(kind_of_color)]

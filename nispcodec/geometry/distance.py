@@ -12,7 +12,7 @@ from nispcodec.geometry.solid import SHELL, Solid, normals
 from nispcodec.geometry.z_order import z_order
 
 LIFT = 1e-6
-"""How far in front of a sheet (normalised frame) its points are looked for: of two faces back to
+"""How far in front of a sheet (normalized frame) its points are looked for: of two faces back to
 back the one on the same side is the closest."""
 
 

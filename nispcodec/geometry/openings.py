@@ -13,7 +13,7 @@ from nispcodec.core.arrays import BoolArray, Float64Array
 from nispcodec.geometry.distance import DistanceField
 
 OPEN = 6e-3
-"""A membrane nearer to the surface than this (normalised frame) closes no opening to speak of."""
+"""A membrane nearer to the surface than this (normalized frame) closes no opening to speak of."""
 
 REACH = 0.9
 BISECTIONS = 6
@@ -24,7 +24,7 @@ CHILDREN = 2
 def crossings(
     field: DistanceField, points: Float64Array, random: np.random.Generator
 ) -> Float64Array:
-    """Points (k, 3) on membranes, looked for around points (n, 3), normalised frame.
+    """Points (k, 3) on membranes, looked for around points (n, 3), normalized frame.
 
     A step shorter than the distance to the surface cannot cross it; where the sign changes on such
     a step nevertheless, it crosses a membrane.

@@ -19,13 +19,13 @@ from nispcodec.geometry.charts import connected_faces, row_ids
 from nispcodec.geometry.z_order import z_order
 
 OFFSET = 2e-3
-"""How far off a face (normalised frame) one looks to tell which of its sides are inside."""
+"""How far off a face (normalized frame) one looks to tell which of its sides are inside."""
 
 SHELL = 4e-3
-"""Half the thickness (normalised frame) given to sheets."""
+"""Half the thickness (normalized frame) given to sheets."""
 
 THIN = 1e-3
-"""Walls thinner than this (normalised frame) are sheets: nothing inside them would be learned."""
+"""Walls thinner than this (normalized frame) are sheets: nothing inside them would be learned."""
 
 COARSE_EDGE = 0.1
 FINE_EDGE = 0.03
@@ -50,7 +50,7 @@ TINY = 1e-30
 
 @dataclass(frozen=True)
 class Solid:
-    """A mesh in the normalised frame, sorted by what an SDF can hold.
+    """A mesh in the normalized frame, sorted by what an SDF can hold.
 
     pieces  (p, 3, 3) float64: the outer faces and sheets, large ones subdivided
     parents (p,) int: the mesh face that each piece is part of
@@ -70,7 +70,7 @@ class Solid:
 
 
 def build_solid(corners: Float64Array) -> Solid:
-    """Sort the faces (m, 3, 3), normalised frame. Raises MeshError when none can be seen."""
+    """Sort the faces (m, 3, 3), normalized frame. Raises MeshError when none can be seen."""
     free = _free_bodies(corners)
     bodies = corners[~free]
     winding = Winding(bodies)
@@ -107,7 +107,7 @@ def normals(triangles: Float64Array) -> Float64Array:
 
 
 class Winding:
-    """Generalised winding number of a triangle soup (m, 3, 3)."""
+    """Generalized winding number of a triangle soup (m, 3, 3)."""
 
     def __init__(self, bodies: Float64Array) -> None:
         self._tree = igl.FastWindingNumberBVH()
@@ -151,9 +151,9 @@ def _classify(
 
 def _thin(winding: Winding, pieces: Float64Array) -> BoolArray:
     """Which pieces (p,) have the outside in front and, a thin wall away, behind them as well."""
-    centre, step = pieces.mean(axis=1), THIN * normals(pieces)
-    thin: BoolArray = np.abs(winding.at(centre - step)) <= 0.5
-    thin[thin] = np.abs(winding.at((centre + step)[thin])) <= 0.5
+    center, step = pieces.mean(axis=1), THIN * normals(pieces)
+    thin: BoolArray = np.abs(winding.at(center - step)) <= 0.5
+    thin[thin] = np.abs(winding.at((center + step)[thin])) <= 0.5
     return thin
 
 
@@ -186,8 +186,8 @@ def _free_bodies(corners: Float64Array) -> BoolArray:
     vertices = row_ids(corners.reshape(-1, 3)).reshape(-1, 3)
     body = connected_faces(vertices)
     size = np.maximum(np.bincount(body, weights=area(corners)), TINY)
-    opening, centre, owner = _openings(corners, vertices, body)
-    exposed = _exposed(corners, centre)
+    opening, center, owner = _openings(corners, vertices, body)
+    exposed = _exposed(corners, center)
     open_area = np.bincount(owner[exposed], weights=opening[exposed], minlength=len(size))
     is_open = open_area / size > OPENNESS
     is_card = np.bincount(owner, weights=opening, minlength=len(size)) / size > CARD
@@ -195,14 +195,14 @@ def _free_bodies(corners: Float64Array) -> BoolArray:
     return mask
 
 
-def _exposed(corners: Float64Array, centre: Float64Array) -> BoolArray:
-    """Which openings, by their centres (n, 3), are large and not plugged by another body.
+def _exposed(corners: Float64Array, center: Float64Array) -> BoolArray:
+    """Which openings, by their centers (n, 3), are large and not plugged by another body.
 
     Closing one, as the winding number does where it passes 1/2, would draw a membrane that nobody
-    modelled. Openings within `GAP` of the mesh (flat cards, panels) need no such care.
+    modeled. Openings within `GAP` of the mesh (flat cards, panels) need no such care.
     """
-    undecided = np.abs(np.abs(Winding(corners).at(centre)) - 0.5) < UNDECIDED
-    exposed: BoolArray = undecided & (_gap(corners, centre) > GAP)
+    undecided = np.abs(np.abs(Winding(corners).at(center)) - 0.5) < UNDECIDED
+    exposed: BoolArray = undecided & (_gap(corners, center) > GAP)
     return exposed
 
 
@@ -211,7 +211,7 @@ def _with_cards(
 ) -> BoolArray:
     """The `free` bodies (b,) and the cards among the others that close nothing.
 
-    The winding number beside a card is a half and whatever its neighbours add: where there are many
+    The winding number beside a card is a half and whatever its neighbors add: where there are many
     (leaves), any number. Beside one that closes a body it is a whole one. Cards let go show others.
     """
     while (card & ~free).any():
@@ -239,7 +239,7 @@ def _gap(corners: Float64Array, points: Float64Array) -> Float64Array:
 def _openings(
     corners: Float64Array, vertices: Int64Array, body: IntArray
 ) -> tuple[Float64Array, Float64Array, IntArray]:
-    """Fan triangles that close every boundary loop: their areas, centres and bodies."""
+    """Fan triangles that close every boundary loop: their areas, centers and bodies."""
     start = vertices.reshape(-1)
     end = np.roll(vertices, -1, axis=1).reshape(-1)
     low, high = np.minimum(start, end), np.maximum(start, end)

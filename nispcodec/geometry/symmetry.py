@@ -1,6 +1,6 @@
 """Mirror symmetry: a network that sees |x| in place of x has to hold only half of the surface.
 
-Most assets that are modelled in halves are not quite symmetric: a bracket on one side, an engraved
+Most assets that are modeled in halves are not quite symmetric: a bracket on one side, an engraved
 number. There the network is told |x| and x, and has to hold the half and what differs.
 """
 
@@ -19,9 +19,9 @@ PROBES = 2_000
 JITTER = 5e-3
 
 SYMMETRIC = 3e-5
-"""Up to this mean difference (normalised frame) of the SDF at a point and at its mirror image.
+"""Up to this mean difference (normalized frame) of the SDF at a point and at its mirror image.
 
-Assets modelled in two halves stay below 1e-5; a small part on one side only (exploding_barrel in z)
+Assets modeled in two halves stay below 1e-5; a small part on one side only (exploding_barrel in z)
 makes 1e-4 to 2e-4 and must not be lost.
 """
 
@@ -44,11 +44,11 @@ class Mirrors:
 
 
 Label = Callable[[Float64Array], SampleSet]
-"""What there is at points (n, 3) of the normalised frame."""
+"""What there is at points (n, 3) of the normalized frame."""
 
 
 def mirrors(label: Label, pieces: Float64Array) -> Mirrors:
-    """About which of the planes x, y, z = 0 of the normalised frame an asset is symmetric.
+    """About which of the planes x, y, z = 0 of the normalized frame an asset is symmetric.
 
     Told by random points around its `pieces` (p, 3, 3), always the same.
     """

@@ -1,4 +1,4 @@
-"""Points in an order that follows space: a tree asked for neighbours in turn finds its way cached.
+"""Points in an order that follows space: a tree asked for neighbors in turn finds its way cached.
 
 Morton's Z-order curve. In random order distances take twice as long, winding numbers up to 1.4
 times (docs/decisions/0085-sampling-in-space-order.md).

@@ -26,9 +26,9 @@ SMALLEST = 64
 def evaluate(
     network: Network, points: Float32Array, charts: IntArray | None = None
 ) -> Float32Array:
-    """The network's outputs at points of the normalised frame.
+    """The network's outputs at points of the normalized frame.
 
-    points (n, 3) float32, normalised frame; charts (n,) integers, wanted by networks that are
+    points (n, 3) float32, normalized frame; charts (n,) integers, wanted by networks that are
     conditioned on the chart -> (n, outputs) float32. Any n, 0 included. Raises QueryError when a
     conditioned network gets no charts or charts that it does not know.
     """
@@ -77,7 +77,7 @@ def contrast(
 def gradient(network: Network, points: Float32Array) -> tuple[Float32Array, Float32Array]:
     """Values and analytic gradients of a network with one output and no conditioning.
 
-    points (n, 3) float32, normalised frame -> values (n,), gradients (n, 3), both float32. On the
+    points (n, 3) float32, normalized frame -> values (n,), gradients (n, 3), both float32. On the
     plane of a mirror the gradient lies in it: the mean of those on either side.
     """
     values = np.empty(len(points), np.float32)

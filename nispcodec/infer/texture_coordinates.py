@@ -10,7 +10,7 @@ from nispcodec.infer.evaluate import evaluate
 
 
 def asset_uv(document: Document, points: Float32Array, charts: IntArray) -> Float32Array:
-    """UV of points (n, 3), normalised frame, on charts (n,) -> (n, 2); (0, 0) without UV."""
+    """UV of points (n, 3), normalized frame, on charts (n,) -> (n, 2); (0, 0) without UV."""
     if document.uv is None:
         return np.zeros((len(points), 2), np.float32)
     table = document.charts

@@ -1,4 +1,4 @@
-"""Image files: recognised and checked, never changed unless no viewer could read them."""
+"""Image files: recognized and checked, never changed unless no viewer could read them."""
 
 from __future__ import annotations
 
@@ -95,8 +95,8 @@ class TextureShelf:
         return next(name for name in names if name.casefold() not in taken)
 
 
-def is_grey(data: bytes, place: str) -> bool:
-    """Whether an image has no colour anywhere, by a coarse look."""
+def is_gray(data: bytes, place: str) -> bool:
+    """Whether an image has no color anywhere, by a coarse look."""
     if _unsupported(data) is not None:
         return False
     small = _decoded(data, place).convert("RGB").resize((64, 64), PIL.Image.Resampling.NEAREST)

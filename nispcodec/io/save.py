@@ -28,7 +28,7 @@ def write_mesh(mesh: TexturedMesh, path: Path, colors: Float32Array | None = Non
 
     An OBJ puts its MTL and images beside it. Each file is written under another name and then
     renamed. `colors` (n, 4), sRGB-encoded in [0, 1], one a position, take the place of UVs,
-    materials and textures. Raises MeshError for an unknown suffix, no faces, colours that do not
+    materials and textures. Raises MeshError for an unknown suffix, no faces, colors that do not
     fit or that the format cannot hold; NispError when writing fails.
     """
     path = Path(path)

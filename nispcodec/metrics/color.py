@@ -1,4 +1,4 @@
-"""How far the base colours of paired points differ."""
+"""How far the base colors of paired points differ."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from nispcodec.metrics.uv import uv_at
 
 
 def color_at(surface: Surface, points: SurfacePoints) -> Float32Array:
-    """(n, 4) float32: sRGB-encoded base colour and alpha at points of a surface.
+    """(n, 4) float32: sRGB-encoded base color and alpha at points of a surface.
 
     Faces without UV show their material's factor alone.
     """
@@ -26,7 +26,7 @@ def color_at(surface: Surface, points: SurfacePoints) -> Float32Array:
 
 
 def color_psnr(original: Surface, decoded: Surface, directions: Iterable[Matches]) -> float:
-    """PSNR in dB of the RGB base colours of all pairs, sRGB-encoded, peak 1."""
+    """PSNR in dB of the RGB base colors of all pairs, sRGB-encoded, peak 1."""
     matches = reduce(Matches.__add__, directions)
     first = color_at(original, matches.original)[:, :3].astype(np.float64)
     second = color_at(decoded, matches.decoded)[:, :3]

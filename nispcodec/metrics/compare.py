@@ -18,7 +18,7 @@ from nispcodec.metrics.geometry import (
     distance_summary,
     normal_consistency,
 )
-from nispcodec.metrics.parameterisation import distortion_summary
+from nispcodec.metrics.parameterization import distortion_summary
 from nispcodec.metrics.sides import Sides, sides_of
 from nispcodec.metrics.spurious import spurious_components
 from nispcodec.metrics.surface import Surface, SurfacePoints, frame_of
@@ -33,7 +33,7 @@ Report = dict[str, Group]
 class Reference:
     """An original, ready to be compared with any number of decodes; see `compare`.
 
-    surface in its normalised frame; sides of all the points drawn from it; seen, the outer ones.
+    surface in its normalized frame; sides of all the points drawn from it; seen, the outer ones.
     """
 
     surface: Surface
@@ -65,7 +65,7 @@ class Reference:
         }
         if original.mesh.has_uv.any():
             report["uv"] = _uv(original, second, directions)
-            report["parameterisation"] = _parameterisation(original, second)
+            report["parameterization"] = _parameterization(original, second)
         report["color"] = {"psnr": color_psnr(original, second, directions.values())}
         if model is not None:
             world = self.frame.to_world(original.outlook(self.seen))
@@ -81,7 +81,7 @@ def compare(
     seed: int = 0,
     model: Chooser | None = None,
 ) -> Report:
-    """Distortion of `decoded` against `original`, in the normalised frame of the original.
+    """Distortion of `decoded` against `original`, in the normalized frame of the original.
 
     `samples` points are drawn from each surface, uniformly by area; of those on the original only
     the outer ones count. The chart accuracy is there when the `model` to ask is given; uv when
@@ -124,7 +124,7 @@ def _charts(original: Surface, seen: SurfacePoints, world: Float64Array, model: 
     return {"accuracy": chart_accuracy(model, world, uv_at(original, seen), materials)}
 
 
-def _parameterisation(original: Surface, decoded: Surface) -> Group:
+def _parameterization(original: Surface, decoded: Surface) -> Group:
     return {"original": distortion_summary(original), "decoded": distortion_summary(decoded)}
 
 

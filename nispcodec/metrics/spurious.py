@@ -14,7 +14,7 @@ FAR = 0.02
 def spurious_components(decoded: TexturedMesh, original: TexturedMesh) -> dict[str, float]:
     """Count and area of the decoded components that lie wholly further than FAR from the original.
 
-    Normalised frame of the original. A component is a set of faces connected through shared
+    Normalized frame of the original. A component is a set of faces connected through shared
     positions; it is far when all its vertices are.
     """
     frame = frame_of(original)

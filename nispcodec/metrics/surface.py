@@ -1,4 +1,4 @@
-"""A mesh as a surface in the normalised frame: sampling it and finding closest points on it."""
+"""A mesh as a surface in the normalized frame: sampling it and finding closest points on it."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ FLAT = 1e-7
 """A face whose height is less than this part of its longest edge is a line, to double precision."""
 
 BEFORE = 2e-3
-"""How far in front of one of two faces back to back one looks from (normalised frame)."""
+"""How far in front of one of two faces back to back one looks from (normalized frame)."""
 
 
 def frame_of(mesh: TexturedMesh) -> Frame:
-    """The normalised frame of a mesh: bounding-box centre at 0, farthest used vertex at radius 1.
+    """The normalized frame of a mesh: bounding-box center at 0, farthest used vertex at radius 1.
 
     Raises MeshError for a mesh without faces or of a single point.
     """
@@ -37,7 +37,7 @@ def frame_of(mesh: TexturedMesh) -> Frame:
 
 @dataclass(frozen=True)
 class SurfacePoints:
-    """Points on a surface: faces (n,), barycentric weights (n, 3), positions (n, 3) normalised."""
+    """Points on a surface: faces (n,), barycentric weights (n, 3), positions (n, 3) normalized."""
 
     faces: Int64Array
     weights: Float64Array
@@ -59,7 +59,7 @@ class SurfacePoints:
 
 @dataclass(frozen=True)
 class Surface:
-    """A mesh with its positions (n, 3) in the normalised frame.
+    """A mesh with its positions (n, 3) in the normalized frame.
 
     Raises MeshError, on first use, when no face has an area.
     """
@@ -70,7 +70,7 @@ class Surface:
     @classmethod
     def of(cls, mesh: TexturedMesh, frame: Frame) -> Surface:
         """The surface of a mesh given in the world frame."""
-        return cls(mesh, frame.to_normalised(mesh.positions))
+        return cls(mesh, frame.to_normalized(mesh.positions))
 
     @cached_property
     def corners(self) -> Float64Array:
@@ -101,7 +101,7 @@ class Surface:
     def sample(self, count: int, rng: np.random.Generator) -> SurfacePoints:
         """`count` points spread uniformly over the area, in the order of the faces."""
         cumulative = np.cumsum(self.areas[self._solid])
-        # Sorted, neighbours in the list are neighbours in space: trees answer twice as fast.
+        # Sorted, neighbors in the list are neighbors in space: trees answer twice as fast.
         drawn = np.sort(rng.random(count)) * cumulative[-1]
         faces = self._solid[np.searchsorted(cumulative, drawn)]
         root, second = np.sqrt(rng.random(count)), rng.random(count)

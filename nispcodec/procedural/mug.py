@@ -105,7 +105,7 @@ HANDLE_REGION = Rectangle((0.02, 0.03), (0.6, 0.17))
 def sample_asset() -> TexturedMesh:
     """A textured asset of three closed bodies, seven charts and two materials; always the same.
 
-    Centimetres, y up. Concave inside the mug and under its handle; no two charts overlap in UV.
+    Centimeters, y up. Concave inside the mug and under its handle; no two charts overlap in UV.
     """
     wood_color, wood_normal = wood_textures()
     wood = {"base_color": TextureMap(1), "normal": TextureMap(2)}

@@ -33,7 +33,7 @@ def glaze_texture() -> Texture:
 
 
 def wood_textures() -> tuple[Texture, Texture]:
-    """Base colour and normal map of a plank cut across its rings."""
+    """Base color and normal map of a plank cut across its rings."""
     u, v = _grid()
     bent = u + 0.03 * np.sin(2 * np.pi * (v * 1.3 + 0.2)) + 0.012 * np.sin(2 * np.pi * 3.1 * v)
     rings = 0.5 + 0.5 * np.sin(2 * np.pi * 15 * (bent + 0.05 * bent**2))
@@ -45,9 +45,9 @@ def wood_textures() -> tuple[Texture, Texture]:
 
 
 def _grid() -> tuple[Float64Array, Float64Array]:
-    """u and v of the texel centres, top row first, v upwards."""
-    centres = (np.arange(SIZE) + 0.5) / SIZE
-    u, v = np.meshgrid(centres, centres[::-1])
+    """u and v of the texel centers, top row first, v upwards."""
+    centers = (np.arange(SIZE) + 0.5) / SIZE
+    u, v = np.meshgrid(centers, centers[::-1])
     return u, v
 
 

@@ -1,4 +1,4 @@
-"""Pinhole cameras around the unit ball of the normalised frame, and the views that have names."""
+"""Pinhole cameras around the unit ball of the normalized frame, and the views that have names."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ class Camera:
     azimuth    degrees around y: 0 from +z (the front of a glTF asset), 90 from +x
     elevation  degrees above the horizon, -90 to 90
     fov        angle in degrees that the picture spans, 1 to 120
-    target     the point in the middle of the picture, normalised frame
+    target     the point in the middle of the picture, normalized frame
     zoom       how many times larger than life: narrows the angle, the camera stays where it is
     """
 

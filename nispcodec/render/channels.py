@@ -1,4 +1,4 @@
-"""What a picture can show besides light: one function a channel, from samples to colours."""
+"""What a picture can show besides light: one function a channel, from samples to colors."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from nispcodec.core.errors import QueryError
 from nispcodec.render.picture import Eye, Samples
 
 MANY_STEPS = 64
-# Neighbouring numbers get hues far apart.
+# Neighboring numbers get hues far apart.
 GOLDEN = 0.618034
 
 
@@ -50,8 +50,8 @@ def _chart(eye: Eye, seen: Samples) -> Float32Array:
 def _depth(eye: Eye, seen: Samples) -> Float32Array:
     """White where the unit ball begins, black where it ends."""
     nearest = np.linalg.norm(eye.camera.eye) - 1
-    grey = 1 - np.clip(np.nan_to_num(seen.distances - nearest, posinf=0) / 2, 0, 1)
-    return np.repeat(grey[:, None], 3, axis=1).astype(np.float32)
+    gray = 1 - np.clip(np.nan_to_num(seen.distances - nearest, posinf=0) / 2, 0, 1)
+    return np.repeat(gray[:, None], 3, axis=1).astype(np.float32)
 
 
 def _steps(eye: Eye, seen: Samples) -> Float32Array:

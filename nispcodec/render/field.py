@@ -14,7 +14,7 @@ from nispcodec.render.march import March
 from nispcodec.render.space import bounding_space
 from nispcodec.render.tangents import tangent_axes
 
-# How far from a point its UVs are asked, to see how they change (normalised frame).
+# How far from a point its UVs are asked, to see how they change (normalized frame).
 OFFSET = np.float32(1e-3)
 # A hit is moved along its ray by no more than this.
 CORRECTION = 5e-4
@@ -78,8 +78,8 @@ class FieldScene:
     ) -> Fragments:
         table = self.model.document.charts
         normals = slopes / np.maximum(np.linalg.norm(slopes, axis=1, keepdims=True), 1e-12)
-        charts = self.model.charts(points, "normalised")
-        uvs = self.model.uv(points, "normalised", charts)
+        charts = self.model.charts(points, "normalized")
+        uvs = self.model.uv(points, "normalized", charts)
         return Fragments(
             rays=rays,
             distances=distances,
@@ -98,6 +98,6 @@ class FieldScene:
         """(n, 2, 3): the UV network's Jacobian within the tangent plane, by two more queries."""
         jacobians = np.zeros((len(points), 2, 3), np.float32)
         for axis in tangent_axes(normals):
-            moved = self.model.uv(points + OFFSET * axis, "normalised", charts)
+            moved = self.model.uv(points + OFFSET * axis, "normalized", charts)
             jacobians += ((moved - uvs) / OFFSET)[:, :, None] * axis[:, None, :]
         return jacobians

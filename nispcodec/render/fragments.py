@@ -12,7 +12,7 @@ from nispcodec.core.document import Frame
 
 @dataclass(frozen=True)
 class Fragments:
-    """n points on a surface, normalised frame.
+    """n points on a surface, normalized frame.
 
     rays       (n,) int64, rising: which of the cast rays found it
     distances  (n,) float32 along the ray, from its origin
@@ -54,11 +54,11 @@ class Cast:
 
 
 class Scene(Protocol):
-    """Something to look at, placed in its normalised frame."""
+    """Something to look at, placed in its normalized frame."""
 
     @property
     def frame(self) -> Frame:
-        """The normalised frame's place in the world."""
+        """The normalized frame's place in the world."""
 
     @property
     def materials(self) -> tuple[Material, ...]:

@@ -22,7 +22,7 @@ def layouts(
 ) -> tuple[Float32Array, Float32Array, Float32Array]:
     """The UV layouts of both (size, size, 3), and the distance between them (size, size).
 
-    Of points of the original that are not hidden inside of it. A point has the colour of its
+    Of points of the original that are not hidden inside of it. A point has the color of its
     original UV in both: what is misplaced stands out. The distance is shown at the original UV.
     """
     surface = Surface.of(original, frame)

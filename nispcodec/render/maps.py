@@ -25,7 +25,7 @@ class Maps:
     ) -> Float32Array | None:
         """Texels (n, 4) float32 of a slot, linear, or None when the material has none there.
 
-        `footprints` (n,) is the length in the normalised frame that one sample of the picture
+        `footprints` (n,) is the length in the normalized frame that one sample of the picture
         spans: the image is taken at the size at which a texel covers as much.
         """
         used = material.maps.get(slot)

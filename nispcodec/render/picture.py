@@ -18,12 +18,12 @@ from nispcodec.render.shade import looks, shaded
 BAND = 1 << 16
 # A pixel on an edge is the mean of this many samples, squared.
 SUBDIVISION = 3
-# Neighbouring pixels this many pixel widths apart in depth, or with normals whose cosine is less,
+# Neighboring pixels this many pixel widths apart in depth, or with normals whose cosine is less,
 # have an edge between them.
 DEEP, BENT = 6.0, 0.8
 MAX_LAYERS = 16
 OPAQUE = 0.996
-# How far behind a see-through surface a ray goes on (normalised frame).
+# How far behind a see-through surface a ray goes on (normalized frame).
 BEHIND = np.float32(5e-4)
 # Where the lamp is: right, up and backward of the camera.
 LAMP = (-0.5, 0.6, 1.0)

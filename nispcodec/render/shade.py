@@ -1,6 +1,6 @@
 """The one shader: what light a point of a surface sends to the eye, whatever it was found with.
 
-Lambert and normalised Blinn-Phong under one lamp, and an even environment; metallic-roughness
+Lambert and normalized Blinn-Phong under one lamp, and an even environment; metallic-roughness
 materials as in glTF 2.0; all in linear light.
 """
 

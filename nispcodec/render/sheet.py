@@ -22,7 +22,7 @@ from nispcodec.render.views import on_white, render_views, scene_of
 VIEWS, CLOSE_UPS = 4, 2
 STAGES = ("views", "close-ups", "UV layouts", "numbers")
 LINE, FONT, INDENT = 22, 14, 6
-BLACK, GREY = (0, 0, 0), (110, 110, 110)
+BLACK, GRAY = (0, 0, 0), (110, 110, 110)
 
 
 @dataclass(frozen=True)
@@ -44,7 +44,7 @@ def sheet(
 
     Every picture is `size` pixels wide. Both are drawn by the same camera, lamp and shader: a model
     is sphere-traced, a mesh is hit by rays. To their right are the UV layouts. On top stand the
-    title and the numbers: PSNR and SSIM of the VIEWS; distance, UV and colour of the decoded mesh
+    title and the numbers: PSNR and SSIM of the VIEWS; distance, UV and color of the decoded mesh
     as in `nispcodec.metrics.compare`. Raises MeshError for an original without a surface.
     """
     frame = frame_of(original)
@@ -99,7 +99,7 @@ def _text(report: Report) -> str:
     uv = report.get("uv", {}).get("larger")
     if isinstance(uv, dict):
         parts.append(f"UV median {uv['median']:.1e}, mean {uv['mean']:.1e}")
-    parts.append(f"colour {report['color']['psnr']:.1f} dB")
+    parts.append(f"color {report['color']['psnr']:.1f} dB")
     if "charts" in report:
         parts.append(f"charts {report['charts']['accuracy']:.3f}")
     return "   ".join(parts)
@@ -116,7 +116,7 @@ def _page(rows: list[list[Float32Array]], lines: list[str]) -> Float32Array:
         pen.text((INDENT, number * LINE + 3), line, BLACK, font)
     names = ("original", "decoded", f"difference: white 0, black {SCALE:g} of the range and more")
     for number, name in enumerate(names):
-        pen.text((INDENT, top + number * height + 3), name, GREY, font)
+        pen.text((INDENT, top + number * height + 3), name, GRAY, font)
     page = np.asarray(text, dtype=np.float32) / np.float32(255)
     page[top:] = np.minimum(page[top:], grid)
     return page

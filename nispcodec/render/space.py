@@ -1,9 +1,9 @@
 """A bounding shape for a fitted field: where its surface cannot be, known without its network.
 
-Cells of a grid over the cube of the normalised frame are halved where the field says that its
+Cells of a grid over the cube of the normalized frame are halved where the field says that its
 surface may pass, and the field is remembered at the corners of those that are left. Between them
 it is interpolated, with a doubt measured in the middle of every cell, and elsewhere the distance to
-such cells stands for it. What is recognised as noise of the field is no surface at all.
+such cells stands for it. What is recognized as noise of the field is no surface at all.
 """
 
 from __future__ import annotations
@@ -85,7 +85,7 @@ def bounding_space(network: Network, half_thickness: float = 0.0) -> Space:
 
 def _remembered(network: Network, cells: Int64Array, middles: Float32Array, count: int) -> Space:
     """The field at the corners of cells that may hold surface, and distances from them."""
-    slope = _slope(network, _centres(cells, count))
+    slope = _slope(network, _centers(cells, count))
     shape = (count + 1,) * 3
     corners = np.ravel_multi_index(tuple((cells[:, None] + HALVES).T), shape).T
     used, inverse = np.unique(corners, return_inverse=True)
@@ -127,9 +127,9 @@ def _least_of_cells(values: Float32Array) -> Float32Array:
 
 def _crossed(network: Network, cells: Int64Array, count: int) -> tuple[Float32Array, Int64Array]:
     """Those cells, of `count` along an edge, that the surface may cross; the field in them."""
-    centres = _centres(cells, count)
-    field = evaluate(network, centres)[:, 0]
-    near = np.abs(field) <= _slope(network, centres) * np.sqrt(3) * LIMIT / count
+    centers = _centers(cells, count)
+    field = evaluate(network, centers)[:, 0]
+    near = np.abs(field) <= _slope(network, centers) * np.sqrt(3) * LIMIT / count
     return field[near], cells[near]
 
 
@@ -143,10 +143,10 @@ def _slope(network: Network, points: Float32Array) -> float:
 def _is_surface(
     network: Network, half_thickness: float, cells: Int64Array, count: int
 ) -> BoolArray:
-    """Which cells are inside the unit ball and hold no surface that is recognised as noise."""
-    centres = _centres(cells, count)
+    """Which cells are inside the unit ball and hold no surface that is recognized as noise."""
+    centers = _centers(cells, count)
     reach = 2 * LIMIT / count
-    inside: BoolArray = np.linalg.norm(centres, axis=1) < OUTSIDE + reach
+    inside: BoolArray = np.linalg.norm(centers, axis=1) < OUTSIDE + reach
     marked = np.zeros((count,) * 3, np.bool_)
     marked[tuple(cells[inside].T)] = True
     if label(marked, np.ones((3, 3, 3)))[1] < 2:
@@ -161,9 +161,9 @@ def _is_surface(
     unwanted, labels = spurious(network, surface)
     if not unwanted.any():
         return inside
-    distances, nearest = KDTree(surface.positions).query(centres)
+    distances, nearest = KDTree(surface.positions).query(centers)
     return inside & (~unwanted[labels[nearest]] | (distances > 2 * reach))
 
 
-def _centres(cells: Int64Array, count: int) -> Float32Array:
+def _centers(cells: Int64Array, count: int) -> Float32Array:
     return ((cells + 0.5) * (2 * LIMIT / count) - LIMIT).astype(np.float32)

@@ -16,9 +16,9 @@ from nispcodec.core.network import MAX_INIT_SEED, Network
 from nispcodec.core.progress import Listener, Progress
 from nispcodec.dataset.hard_examples import reaches
 from nispcodec.train.backend.torch.module import Module
-from nispcodec.train.backend.torch.optimiser import optimiser
+from nispcodec.train.backend.torch.optimizer import optimizer
 from nispcodec.train.prune import Mask
-from nispcodec.train.quantise import round_weights
+from nispcodec.train.quantize import round_weights
 from nispcodec.train.task import Batch, Rounding, Schedule, Task
 
 WARM_UP = 0.15
@@ -62,7 +62,7 @@ def train(
     (`nispcodec.dataset.hard_examples`).
 
     A run whose held-out error explodes goes on from its best weights at half the rate. At
-    the end the weights are rounded (`nispcodec.train.quantise`), if the task says how.
+    the end the weights are rounded (`nispcodec.train.quantize`), if the task says how.
     Raises FitError when lower rates do not help.
     """
     run = _Run(task, seed, device, listen)
@@ -87,7 +87,7 @@ class _Run:
         self.reviews = _reviews(task.schedule)
         self.rate = task.schedule.rate
         self.retries = 0
-        self.move = optimiser(self.module, task.schedule)
+        self.move = optimizer(self.module, task.schedule)
         self.fresh = _fresh(task.schedule)
         self.mean = self._weights()
         self.best_error = math.inf
@@ -132,7 +132,7 @@ class _Run:
     def _round(self, rounding: Rounding) -> None:
         """Round the best weights, again with other samples where that costs much."""
         steps, before = self.task.schedule.steps, self.best_error
-        told = Progress(self.task.name, "quantise", steps, steps, self.loss, before, 0.0)
+        told = Progress(self.task.name, "quantize", steps, steps, self.loss, before, 0.0)
         tries: list[tuple[float, Tensor, Tensor | None]] = []
         accepted = before * (SLIGHT if len(self.best) < LARGE else NOTABLE)
         priced = self._priced(rounding)
@@ -214,7 +214,7 @@ class _Run:
         self._set(self.best)
         self.mean = self.best.clone()
         self.rate /= 2
-        self.move = optimiser(self.module, self.task.schedule)
+        self.move = optimizer(self.module, self.task.schedule)
         return f"diverged at step {done}: going on from the best weights at rate {self.rate:g}"
 
     @torch.no_grad()
@@ -236,14 +236,14 @@ def _reviews(schedule: Schedule) -> range:
 
 def _fresh(schedule: Schedule) -> float:
     """The share of the newest weights in the running mean."""
-    if schedule.optimiser == "adam":
+    if schedule.optimizer == "adam":
         return 1.0
     return 1 / max(1.0, AVERAGED * schedule.steps)
 
 
 def _shape(schedule: Schedule, step: int) -> float:
     """The rate at a step, relative to the schedule's."""
-    if schedule.optimiser == "adam":
+    if schedule.optimizer == "adam":
         return 1.0
     cosine = 0.5 * (1 + math.cos(math.pi * step / schedule.steps))
     return min(1.0, (step + 1) / (WARM_UP * schedule.steps)) * (0.01 + 0.99 * cosine)

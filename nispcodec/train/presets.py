@@ -86,7 +86,7 @@ EFFORTS = {
 
 @dataclass(frozen=True)
 class Problem:
-    """What the networks of an asset are asked for; `area` of the surface (normalised frame)."""
+    """What the networks of an asset are asked for; `area` of the surface (normalized frame)."""
 
     sets: TrainingSets
     charts: int
@@ -177,9 +177,9 @@ def steps_in(seconds: float, spec: NetworkSpec) -> int:
 
 
 def paper_tasks(charts: int, sets: TrainingSets) -> list[Task]:
-    """The published networks, losses, optimiser and rates (paper, sections 3.2 and 4.1)."""
-    slow = Schedule(PAPER_STEPS, rate=1e-4, optimiser="adam")
-    fast = Schedule(PAPER_STEPS, rate=5e-4, optimiser="adam")
+    """The published networks, losses, optimizer and rates (paper, sections 3.2 and 4.1)."""
+    slow = Schedule(PAPER_STEPS, rate=1e-4, optimizer="adam")
+    fast = Schedule(PAPER_STEPS, rate=5e-4, optimizer="adam")
     samples = _samples(sets)
     return [
         Task("sdf", paper_sdf(), *samples["sdf"], distance_error, distance_error, slow),

@@ -45,7 +45,7 @@ MODELS = {
 }
 
 AREA, AREA_POWER = 5.0, 0.4
-"""With the same error left on a larger surface than this (normalised frame) more is to be held."""
+"""With the same error left on a larger surface than this (normalized frame) more is to be held."""
 
 FINE, FINE_WIDTH = 1.8e-3, 66
 """An SDF whose probe is left with more is of fine detail: wider, and learns slower."""
@@ -57,7 +57,7 @@ DEEP = 5
 def hidden_layers(errors: Mapping[str, float], area: float, scale: float = 1.0) -> Hidden:
     """The hidden layers of every network, from the held-out errors of the probes.
 
-    `area` is the surface's, in the normalised frame; widths are `scale` times as large.
+    `area` is the surface's, in the normalized frame; widths are `scale` times as large.
     """
     widths = {name: MODELS[name].of(error) for name, error in errors.items()}
     widths["sdf"] *= max(1.0, area / AREA) ** AREA_POWER

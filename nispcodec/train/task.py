@@ -1,4 +1,4 @@
-"""One network to fit: its topology, its data, what it minimises and how."""
+"""One network to fit: its topology, its data, what it minimizes and how."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from nispcodec.train.prune import Pruning
 
 @dataclass(frozen=True)
 class Batch:
-    """Labelled points as tensors: points (n, 3), sdf (n,), chart (n,) int64, uv (n, 2)."""
+    """Labeled points as tensors: points (n, 3), sdf (n,), chart (n,) int64, uv (n, 2)."""
 
     points: Tensor
     sdf: Tensor
@@ -84,7 +84,7 @@ class Rounding:
 class Schedule:
     """How long and how fast: `steps` of `batch` points; `rate` is warmed up, then held or lowered.
 
-    `optimiser` is "muon" (for hidden layers, SOAP for all else; rate warmed up, then a cosine down
+    `optimizer` is "muon" (for hidden layers, SOAP for all else; rate warmed up, then a cosine down
     to a hundredth; weights averaged) or "adam" (rate held, as the paper does).
 
     band    frequencies that the first layer starts with, relative to SIREN's
@@ -96,7 +96,7 @@ class Schedule:
     steps: int
     batch: int = 2048
     rate: float = 1e-3
-    optimiser: str = "muon"
+    optimizer: str = "muon"
     band: float = 1.0
     last: float = 1.0
     memory: float = 0.01
@@ -105,7 +105,7 @@ class Schedule:
 
 @dataclass(frozen=True)
 class Task:
-    """Fit `spec` to `samples` by minimising `loss`; `error` on `held_out` says how good it is.
+    """Fit `spec` to `samples` by minimizing `loss`; `error` on `held_out` says how good it is.
 
     Without `rounding` the weights stay float32.
     """

@@ -1,4 +1,4 @@
-"""Baking the model's colours into a new atlas."""
+"""Baking the model's colors into a new atlas."""
 
 from __future__ import annotations
 

@@ -40,7 +40,7 @@ def test_equal_scenes_are_alike(monkeypatch: pytest.MonkeyPatch) -> None:
     assert likeness(ball, small)["psnr"] < 20
 
 
-def test_the_colour_network_is_no_larger_than_what_it_stands_for() -> None:
+def test_the_color_network_is_no_larger_than_what_it_stands_for() -> None:
     for weights in (500, 5_000, 11_000):
         spec = _of_size(weights)
         wider = NetworkSpec(hidden=tuple(width + 1 for width in spec.hidden), outputs=3)
@@ -50,7 +50,7 @@ def test_the_colour_network_is_no_larger_than_what_it_stands_for() -> None:
 def test_sights_are_painted_where_the_surface_is() -> None:
     model = NispModel(tiny.document())
     seen = sight(scene_of(model), Camera())
-    np.testing.assert_allclose(model.sdf(seen.points, "normalised"), 0, atol=1e-3)
+    np.testing.assert_allclose(model.sdf(seen.points, "normalized"), 0, atol=1e-3)
     painted = seen.painted(lambda points: np.zeros((len(points), 3), np.float32))
     assert (painted == 0).all(axis=2).sum() == len(seen.pixels)
     assert painted[0, 0].tolist() == [1, 1, 1]

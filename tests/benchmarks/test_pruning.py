@@ -9,7 +9,7 @@ import pytest
 
 from benchmarks.paper.pruning_figure import draw, holding, tables
 from benchmarks.paper.pruning_published import PUBLISHED, RATES, SIZED, SIZES
-from benchmarks.pruning_or_quantising import against_quantised, table
+from benchmarks.pruning_or_quantizing import against_quantized, table
 
 
 def series() -> dict[str, object]:
@@ -57,7 +57,7 @@ def test_the_tables_name_what_was_measured() -> None:
 
 
 def case() -> dict[str, object]:
-    """Quantising alone halves the bytes for a tenth more error each time."""
+    """Quantizing alone halves the bytes for a tenth more error each time."""
     settings = [
         (0.0, 0.0, 1.0, 4000, 1.0),
         (0.0, 0.005, 1.0, 2000, 1.1),
@@ -72,11 +72,11 @@ def case() -> dict[str, object]:
 
 def test_bytes_are_compared_at_the_same_error() -> None:
     points = case()["points"]
-    assert against_quantised(case(), points[1]) == pytest.approx(1)
-    assert against_quantised(case(), points[3]) == pytest.approx(0.8)
-    assert math.isnan(against_quantised(case(), points[4]))
-    assert against_quantised(case(), points[5]) == pytest.approx(0.25)
-    assert against_quantised(case(), points[3] | {"error": 1.1**1.5}) == pytest.approx(
+    assert against_quantized(case(), points[1]) == pytest.approx(1)
+    assert against_quantized(case(), points[3]) == pytest.approx(0.8)
+    assert math.isnan(against_quantized(case(), points[4]))
+    assert against_quantized(case(), points[5]) == pytest.approx(0.25)
+    assert against_quantized(case(), points[3] | {"error": 1.1**1.5}) == pytest.approx(
         800 / math.sqrt(2000 * 1000)
     )
 

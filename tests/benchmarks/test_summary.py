@@ -5,7 +5,7 @@ import pytest
 
 from benchmarks.bjontegaard import delta_rate, front
 from benchmarks.rows import NAMES, as_csv, from_csv, row
-from benchmarks.summary import bytes_at, duels, summarised
+from benchmarks.summary import bytes_at, duels, summarized
 
 ERRORS = np.geomspace(1e-2, 1e-4, 8)
 
@@ -75,7 +75,7 @@ def test_failed_points_are_rows_but_no_results() -> None:
     assert rows[0]["problem"] == "no luck"
     assert rows[0]["bytes"] is None
     assert rows[1]["color"] == pytest.approx(0.01)
-    summary = summarised(rows)
+    summary = summarized(rows)
     assert [duel["bytes"] for duel in summary["against_rival"]["a"]] == [500]
     assert summary["costs"]["nisp"]["encode_seconds"] == 2.0
     text = as_csv(rows)

@@ -137,7 +137,7 @@ def test_compare_names_the_unreadable_mesh(mesh: Path, tmp_path: Path) -> None:
 POINTS = np.array([[1.0, 2.0, 3.0], [2.5, 2.0, 3.0]])
 
 
-@pytest.mark.parametrize("frame", ["world", "normalised"])
+@pytest.mark.parametrize("frame", ["world", "normalized"])
 def test_query_npz(model: Path, tmp_path: Path, frame: str) -> None:
     np.save(tmp_path / "p.npy", POINTS)
     out = tmp_path / "out.npz"

@@ -53,5 +53,5 @@ def test_contradictions_are_refused(model: Path, tmp_path: Path) -> None:
         assert "Usage:" in result.stderr
     result = nisp("decode", model, "-o", tmp_path / "out.stl", "--resolution", 16, "--colors")
     assert result.exit_code == 2
-    assert "STL holds no colours" in result.stderr
+    assert "STL holds no colors" in result.stderr
     assert not list(tmp_path.glob("out.*"))

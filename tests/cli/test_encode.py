@@ -76,7 +76,7 @@ def test_pruning_is_asked_for(encoder, mesh: Path, tmp_path: Path, rate: str, ex
         ("80%", "expected 0.5 or sdf=0.5,chart=0.6,uv=0.4, found '80%'"),
         ("80", "prune rate of sdf: expected 0 to below 1, found 80"),
         ("sdf=0.5=0.6", "found 'sdf=0.5=0.6'"),
-        ("uv=0.4,colour=0.3", "expected sdf, chart, uv, found 'colour'"),
+        ("uv=0.4,color=0.3", "expected sdf, chart, uv, found 'color'"),
     ],
 )
 def test_a_rate_that_makes_no_sense(
@@ -203,10 +203,10 @@ def test_lines_come_for_stages_and_notes_only_while_time_is_short(capsys) -> Non
     show = Lines()
     for step in range(100):
         show(Progress("sdf", "fit", step=step, steps=100))
-    show(Progress("sdf", "quantise"))
-    show(Progress("sdf", "quantise", note="hot"))
+    show(Progress("sdf", "quantize"))
+    show(Progress("sdf", "quantize", note="hot"))
     lines = capsys.readouterr().err.splitlines()
-    assert [line.split(":")[0] for line in lines] == ["sdf fit", "sdf quantise", "sdf quantise"]
+    assert [line.split(":")[0] for line in lines] == ["sdf fit", "sdf quantize", "sdf quantize"]
 
 
 def test_bars_keep_one_row_a_network(capsys) -> None:

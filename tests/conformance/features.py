@@ -52,7 +52,7 @@ def pruned(source: Network) -> Network:
     return Network(source.spec, tensors)
 
 
-def quantised(source: Network, step: float) -> Network:
+def quantized(source: Network, step: float) -> Network:
     """Multiples of one step for weights and a finer one for biases."""
     steps = {name: step if "weight" in name else step / 8 for name in source.tensors}
     tensors = {
@@ -90,7 +90,7 @@ def rows_apart(width: int) -> Network:
 
 
 def pixels(width: int, height: int, seed: int = 0) -> Uint8Array:
-    """A colourful RGBA image."""
+    """A colorful RGBA image."""
     return np.random.default_rng(seed).integers(0, 256, (height, width, 4), dtype=np.uint8)
 
 
@@ -113,7 +113,7 @@ def plain() -> Document:
 
 
 def textured(used: TextureMap | None = None, image: Texture | None = None) -> Document:
-    """Two charts with UV, one material with a base colour map."""
+    """Two charts with UV, one material with a base color map."""
     material = Material("painted", maps={"base_color": used or TextureMap(0)})
     return dataclasses.replace(
         plain(),
@@ -139,9 +139,9 @@ def _codings() -> Iterator[tuple[str, bytes]]:
         "float32": plain().sdf,
         "float16": rounded(plain().sdf),
         "pruned": pruned(plain().sdf),
-        "symbols": quantised(plain().sdf, 0.01),
-        "pruned-symbols": quantised(pruned(plain().sdf), 0.0078125),
-        "wide-symbols": quantised(plain().sdf, 1e-6),
+        "symbols": quantized(plain().sdf, 0.01),
+        "pruned-symbols": quantized(pruned(plain().sdf), 0.0078125),
+        "wide-symbols": quantized(plain().sdf, 1e-6),
     }
     for kind, sdf in kinds.items():
         for coding in (
@@ -159,7 +159,7 @@ def _codings() -> Iterator[tuple[str, bytes]]:
     coarse = dataclasses.replace(plain(), sdf=rows_apart(3))
     for coding in ("dense", "csc", "dia", "entropy"):
         yield f"row-shifts-{coding}", pack(coarse, coding)
-    long = quantised(pruned(network((182, 182), 1, 12)), 0.0078125)
+    long = quantized(pruned(network((182, 182), 1, 12)), 0.0078125)
     yield "coding-entropy-long", pack(dataclasses.replace(plain(), sdf=long), "entropy")
     empty = Network(plain().sdf.spec, {k: v * 0 for k, v in plain().sdf.tensors.items()})
     for coding in ("coo", "csr", "dia", "entropy"):
@@ -246,8 +246,8 @@ def _materials() -> Iterator[tuple[str, bytes]]:
     yield "image-webp", pack(textured(image=webp))
     avif = texture("a.avif", "image/avif", opaque, quality=90)
     yield "image-avif", pack(textured(image=avif))
-    grey = texture("grey.png", "image/png", pixels(6, 3)[..., 0])
-    yield "image-grey", pack(textured(image=grey))
+    gray = texture("gray.png", "image/png", pixels(6, 3)[..., 0])
+    yield "image-gray", pack(textured(image=gray))
     tinted = Material("tinted", (0.8, 0.5, 0.2, 0.5), maps={"base_color": TextureMap(0)})
     yield "factor", pack(dataclasses.replace(textured(), materials=(tinted,)))
     maps = {

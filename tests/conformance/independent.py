@@ -22,7 +22,7 @@ WHITE = [1.0, 1.0, 1.0, 1.0]
 
 
 class Reader:
-    """One file, ready to answer at points of the normalised frame."""
+    """One file, ready to answer at points of the normalized frame."""
 
     def __init__(self, file: bytes) -> None:
         rows = {row[0]: row for row in DECODER["read_table"](file)}

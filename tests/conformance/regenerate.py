@@ -35,10 +35,10 @@ def answers(data: bytes) -> dict[str, Any]:
     points = points[_steady(model, points)][:POINTS]
     found = {
         "points": points,
-        "sdf": model.sdf(points, "normalised"),
-        "chart": model.charts(points, "normalised"),
-        "uv": model.uv(points, "normalised"),
-        "color": model.color(points, "normalised"),
+        "sdf": model.sdf(points, "normalized"),
+        "chart": model.charts(points, "normalized"),
+        "uv": model.uv(points, "normalized"),
+        "color": model.color(points, "normalized"),
     }
     if document.frame != Frame((0.0, 0.0, 0.0), 1.0):
         world = document.frame.to_world(points)
@@ -55,7 +55,7 @@ def _steady(model: NispModel, points: Float32Array) -> BoolArray:
         steady &= (margin > 0.01) | (margin == 0)
     for texture in model.document.textures:
         size = decode_image(texture).shape[1::-1]
-        inside = model.uv(points, "normalised") * np.array(size) % 1
+        inside = model.uv(points, "normalized") * np.array(size) % 1
         steady &= (np.abs(inside - 0.5) < 0.48).all(axis=1)
     return steady
 

@@ -40,11 +40,11 @@ def test_the_library_answers(path: Path) -> None:
     document = unpack(path.read_bytes())
     model, wanted = NispModel(document), expected(path)
     points = wanted["points"]
-    assert close(model.sdf(points, "normalised"), wanted["sdf"], "sdf")
-    assert (model.charts(points, "normalised") == wanted["chart"]).all()
-    uvs = model.uv(points, "normalised")
+    assert close(model.sdf(points, "normalized"), wanted["sdf"], "sdf")
+    assert (model.charts(points, "normalized") == wanted["chart"]).all()
+    uvs = model.uv(points, "normalized")
     assert close(uvs, wanted["uv"], "uv", np.maximum(np.abs(document.charts.uv_scale), 1))
-    assert close(model.color(points, "normalised"), wanted["color"], "color")
+    assert close(model.color(points, "normalized"), wanted["color"], "color")
     if "world_points" in wanted:
         found = model.sdf(wanted["world_points"])
         assert close(found, wanted["world_sdf"], "sdf", document.frame.radius)

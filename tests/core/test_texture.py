@@ -90,9 +90,9 @@ def test_decode_keeps_values_alpha_and_row_order() -> None:
     np.testing.assert_allclose(image * 255, pixels, atol=1e-4)
 
 
-def test_decode_16_bit_grey() -> None:
-    grey = np.array([[0, 65535 // 4]], dtype=np.uint16)
-    image = decode_image(encoded(PIL.Image.fromarray(grey)))
+def test_decode_16_bit_gray() -> None:
+    gray = np.array([[0, 65535 // 4]], dtype=np.uint16)
+    image = decode_image(encoded(PIL.Image.fromarray(gray)))
     np.testing.assert_allclose(image[0, 1], [0.25, 0.25, 0.25, 1], atol=1e-4)
 
 

@@ -1,4 +1,4 @@
-"""Confusion: samples are drawn again where a wrong chart shows another colour, and only there."""
+"""Confusion: samples are drawn again where a wrong chart shows another color, and only there."""
 
 from __future__ import annotations
 
@@ -13,16 +13,16 @@ from tests.geometry.shapes import box_asset
 
 
 def painted(first: float, second: float) -> TexturedMesh:
-    """The box, whose two materials have a grey each, linear, and no texture."""
-    greys = ((value, value, value, 1.0) for value in (first, second))
+    """The box, whose two materials have a gray each, linear, and no texture."""
+    grays = ((value, value, value, 1.0) for value in (first, second))
     return replace(
         box_asset(),
-        materials=tuple(Material(str(i), base_color=grey) for i, grey in enumerate(greys)),
+        materials=tuple(Material(str(i), base_color=gray) for i, gray in enumerate(grays)),
         textures=(),
     )
 
 
-def test_it_is_found_where_another_colour_is_near_and_nowhere_else() -> None:
+def test_it_is_found_where_another_color_is_near_and_nowhere_else() -> None:
     sampler = Sampler(painted(0, 1), 0)
     samples = sampler.surface(5000)
     found = confusion(painted(0, 1), sampler.table, samples)
@@ -35,7 +35,7 @@ def test_it_is_found_where_another_colour_is_near_and_nowhere_else() -> None:
     assert found.max() <= np.sqrt(3 / 4)
 
 
-def test_charts_of_one_colour_cannot_be_confused() -> None:
+def test_charts_of_one_color_cannot_be_confused() -> None:
     sampler = Sampler(painted(0.5, 0.5), 0)
     samples = sampler.surface(1000)
     assert len(np.unique(samples.chart)) > 1

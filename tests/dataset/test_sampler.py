@@ -1,4 +1,4 @@
-"""Samples: where they lie and what they are labelled with."""
+"""Samples: where they lie and what they are labeled with."""
 
 from __future__ import annotations
 
@@ -6,14 +6,14 @@ import numpy as np
 import pytest
 
 from nispcodec.dataset import recipes as training
-from nispcodec.dataset.sampler import BETA, CUBE, Sampler, normalising_frame
+from nispcodec.dataset.sampler import BETA, CUBE, Sampler, normalizing_frame
 from nispcodec.geometry.solid import SHELL
 from nispcodec.geometry.surface_points import barycentric
 from tests.geometry.shapes import box_asset, cube, hemisphere, soup
 
 
-def test_the_frame_is_centred_and_of_radius_one() -> None:
-    frame = normalising_frame(soup(hemisphere() * 3 + [5, 6, 7]))
+def test_the_frame_is_centered_and_of_radius_one() -> None:
+    frame = normalizing_frame(soup(hemisphere() * 3 + [5, 6, 7]))
     assert frame.center == pytest.approx((5, 6, 8.5))
     assert frame.radius == pytest.approx(np.hypot(3, 1.5))
 
@@ -40,7 +40,7 @@ def test_the_papers_sdf_is_told_about_empty_space_too(monkeypatch: pytest.Monkey
 
 def test_labels_of_the_box() -> None:
     sampler = Sampler(box_asset(), seed=0)
-    side = sampler.frame.to_normalised(np.array([[1.2, 0.0, 0.5], [-1.5, 0.25, 0.0]]))
+    side = sampler.frame.to_normalized(np.array([[1.2, 0.0, 0.5], [-1.5, 0.25, 0.0]]))
     labels = sampler.label(side)
     assert labels.sdf == pytest.approx(np.array([0.2, 0.5]) / sampler.frame.radius)
     uv = labels.uv * sampler.table.uv_scale + sampler.table.uv_offset

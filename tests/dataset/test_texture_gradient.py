@@ -41,7 +41,7 @@ def test_change_is_found_at_the_edge_alone() -> None:
     found = detail(mesh, sampler.table, samples)
     near, texel = owned & (off < 0.5 * NEARBY), 1 / 6000
     assert near.any()
-    # One of four ways sees the other colour; within the blurred texel two see half of it.
+    # One of four ways sees the other color; within the blurred texel two see half of it.
     assert found[near].min() > 0.3
     assert not found[~owned | (off > NEARBY + texel)].any()
 

@@ -87,7 +87,7 @@ def test_names_stay_different() -> None:
 @pytest.mark.parametrize(
     ("slot", "data", "material", "words"),
     [
-        ("colour", image(), None, "slot: expected one of base_color"),
+        ("color", image(), None, "slot: expected one of base_color"),
         ("emissive", image(), None, "slot emissive: expected a texture there, found base_color"),
         ("base_color", image(), "gold", "expected one of 'painted', 'second', found 'gold'"),
         ("base_color", image(), None, "a material to be named, found 'painted', 'second'"),

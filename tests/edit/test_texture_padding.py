@@ -1,4 +1,4 @@
-"""Padded gutters: what faces show stays, what none shows takes the colours beside it."""
+"""Padded gutters: what faces show stays, what none shows takes the colors beside it."""
 
 from __future__ import annotations
 
@@ -14,13 +14,13 @@ from nispcodec.core.texture import encode_image, image_bytes
 from nispcodec.edit.texture_padding import with_padded_gutters
 from tests.geometry.shapes import soup
 
-RED, BLUE, GREY = (255, 0, 0, 255), (0, 0, 255, 255), (90, 90, 90, 255)
+RED, BLUE, GRAY = (255, 0, 0, 255), (0, 0, 255, 255), (90, 90, 90, 255)
 SQUARE = np.array([[[0, 0], [1, 0], [1, 1]], [[0, 0], [1, 1], [0, 1]]], float)
 
 
 def atlas(wrap: str = "repeat", shift: float = 0.0) -> TexturedMesh:
-    """Two charts, red at the lower left and blue at the upper right, grey between them."""
-    pixels = np.full((16, 32, 4), GREY, np.uint8)
+    """Two charts, red at the lower left and blue at the upper right, gray between them."""
+    pixels = np.full((16, 32, 4), GRAY, np.uint8)
     pixels[8:, :16], pixels[:4, 24:] = RED, BLUE
     uvs = np.concatenate([SQUARE / 2, SQUARE / 4 + 0.75])
     triangles = np.concatenate([np.pad(SQUARE, ((0, 0), (0, 0), (0, 1))) + n for n in (0, 3)])
@@ -31,11 +31,11 @@ def atlas(wrap: str = "repeat", shift: float = 0.0) -> TexturedMesh:
 
 
 @pytest.mark.parametrize("shift", [0.0, 3.0, -1.0])
-def test_gutters_take_the_nearest_colour_and_charts_keep_theirs(shift: float) -> None:
+def test_gutters_take_the_nearest_color_and_charts_keep_theirs(shift: float) -> None:
     mesh = atlas(shift=shift)
     image = image_bytes(with_padded_gutters(mesh, 90)[0])
     before = image_bytes(mesh.textures[0])
-    used = (before != GREY).any(axis=2)
+    used = (before != GRAY).any(axis=2)
     assert (image[used] == before[used]).all()
     assert set(map(tuple, image.reshape(-1, 4))) == {RED, BLUE}
     assert tuple(image[7, 0]) == RED

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from nispcodec.extract.marching_cubes import CORNERS, EDGES, polygonise, triangle_table
+from nispcodec.extract.marching_cubes import CORNERS, EDGES, polygonize, triangle_table
 from tests.extract.surfaces import assert_closed
 
 
@@ -18,7 +18,7 @@ def random_surface(seed: int, size: int = 10) -> tuple[np.ndarray, np.ndarray, i
     for bit, (x, y, z) in enumerate(CORNERS):
         end = size - 1
         cases |= inside[x : x + end, y : y + end, z : z + end].astype(np.uint8) << bit
-    cells, edges = polygonise(cases.ravel())
+    cells, edges = polygonize(cases.ravel())
     low = np.array([corner for corner, _ in EDGES])[edges]
     axis = np.array([axis for _, axis in EDGES])[edges]
     cell = np.stack(np.unravel_index(cells, cases.shape), axis=1)[:, None] + CORNERS[low]

@@ -46,7 +46,7 @@ def test_islands_in_a_membrane_go_with_it() -> None:
     whole, half = (
         NispModel(replace(model.document, charts=charts)).to_mesh() for charts in (table, opened)
     )
-    right = [model.document.frame.to_normalised(mesh.positions)[:, 0] for mesh in (whole, half)]
+    right = [model.document.frame.to_normalized(mesh.positions)[:, 0] for mesh in (whole, half)]
     assert right[0].max() > 0.79
     assert right[1].max() < 0.02
     assert len(half.faces) > 0.4 * len(whole.faces)

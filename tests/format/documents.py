@@ -33,7 +33,7 @@ def network(spec: NetworkSpec, seed: int = 0, scale: float = 1.0) -> Network:
     )
 
 
-def quantised(source: Network, step: float = 0.125, density: float = 1.0, seed: int = 0) -> Network:
+def quantized(source: Network, step: float = 0.125, density: float = 1.0, seed: int = 0) -> Network:
     """The network rounded to multiples of `step`, a share of its weights zero."""
     generator = np.random.default_rng(seed)
     symbols = {
@@ -74,7 +74,7 @@ def full() -> Document:
             Texture("wood.png", b"not really a png", "image/png"),
             Texture("wood normal.jpg", b"nor a jpeg", "image/jpeg"),
         ),
-        sdf=quantised(network(NetworkSpec((4, 3), 1, activation="relu", output="tanh"))),
+        sdf=quantized(network(NetworkSpec((4, 3), 1, activation="relu", output="tanh"))),
         chart=network(NetworkSpec((5,), 3, encoding="fourier", levels=2), 1),
         uv=network(NetworkSpec((4,), 2, conditioning="embedding", charts=3, embedding=2), 2),
         half_thickness=0.01,
@@ -122,7 +122,7 @@ def materials(textures: int) -> st.SearchStrategy[Material]:
 
 @st.composite
 def networks(draw: st.DrawFn, outputs: int, charts: int = 0) -> Network:
-    """A network of any kind; `charts` 0: not conditioned. Pruned, quantised or neither."""
+    """A network of any kind; `charts` 0: not conditioned. Pruned, quantized or neither."""
     conditioning = draw(st.sampled_from(CONDITIONINGS)) if charts else "none"
     fourier = draw(st.booleans())
     spec = NetworkSpec(
@@ -142,7 +142,7 @@ def networks(draw: st.DrawFn, outputs: int, charts: int = 0) -> Network:
     made = network(spec, draw(st.integers(0, 9)), draw(st.sampled_from([1e-6, 0.1, 50.0])))
     if draw(st.booleans()):
         step = draw(st.sampled_from([0.125, 0.1, 1e-3]))
-        return quantised(made, step, draw(st.sampled_from([0.0, 0.2, 1.0])))
+        return quantized(made, step, draw(st.sampled_from([0.0, 0.2, 1.0])))
     return made
 
 

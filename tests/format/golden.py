@@ -10,7 +10,7 @@ from nispcodec.core.network import Network, NetworkSpec
 
 
 def slab() -> Document:
-    """A slab one unit thick in a world frame twice as large, its weights quantised in part."""
+    """A slab one unit thick in a world frame twice as large, its weights quantized in part."""
     spec = NetworkSpec((2,), 1, activation="relu")
     tensors = {
         "weight.0": np.array([[1, 0, 0], [-1, 0, 0]], np.float32),

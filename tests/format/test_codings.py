@@ -144,7 +144,7 @@ def test_rans(data: st.DataObject) -> None:
 
 @pytest.mark.parametrize("spread", [0.3, 5, 20])
 @pytest.mark.parametrize("shape", ["normal", "laplace", "logistic"])
-def test_quantised_weights_cost_little_more_than_their_entropy(spread: float, shape: str) -> None:
+def test_quantized_weights_cost_little_more_than_their_entropy(spread: float, shape: str) -> None:
     drawn = getattr(np.random.default_rng(0), shape)(0, spread, 3000)
     symbols = np.rint(drawn).astype(np.int32)
     _, counts = np.unique(symbols, return_counts=True)

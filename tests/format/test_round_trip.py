@@ -14,7 +14,7 @@ from nispcodec.core.errors import FormatError
 from nispcodec.core.network import NetworkSpec
 from nispcodec.format import inspect, metadata, pack, unpack
 from nispcodec.format.constants import CODINGS
-from tests.format.documents import assert_same, documents, full, network, quantised, tiny
+from tests.format.documents import assert_same, documents, full, network, quantized, tiny
 from tests.format.test_measures import ENCODERS
 
 
@@ -41,7 +41,7 @@ def test_every_coding_keeps_any_document(document: Document) -> None:
 
 def test_the_default_is_as_small_as_any_coding() -> None:
     spec = NetworkSpec((32, 32, 32), 1)
-    for sdf in (network(spec), quantised(network(spec)), quantised(network(spec), density=0.1)):
+    for sdf in (network(spec), quantized(network(spec)), quantized(network(spec), density=0.1)):
         document = dataclasses.replace(tiny(), sdf=sdf)
         smallest = min(len(pack(document, coding)) for coding in CODINGS)
         assert len(pack(document)) <= smallest

@@ -19,7 +19,7 @@ def test_a_box_is_symmetric_in_three_axes_wherever_it_stands() -> None:
 
 
 def with_bump(axis: int) -> np.ndarray:
-    """A small cube inside the bounding box that two plates set, centred in the other two axes."""
+    """A small cube inside the bounding box that two plates set, centered in the other two axes."""
     plates = [cube((0, 0, 0), 1.0) * [1, 1, 0.1] + [0, 0, at] for at in (0, 0.9)]
     upright = np.concatenate([*plates, cube((0.46, 0.46, 0.1), 0.08)])
     return np.roll(upright, axis - 2, axis=2)

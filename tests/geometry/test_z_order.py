@@ -1,4 +1,4 @@
-"""The order of space: every point once, neighbours near each other."""
+"""The order of space: every point once, neighbors near each other."""
 
 from __future__ import annotations
 

@@ -36,7 +36,7 @@ def one_triangle(**node: Any) -> Gltf:
 
 
 def textured(info: dict[str, Any] | None = None, **material: Any) -> Gltf:
-    """A triangle whose material has a base colour map with this textureInfo."""
+    """A triangle whose material has a base color map with this textureInfo."""
     gltf = Gltf()
     gltf.json["images"] = [{"bufferView": gltf.view(image()), "mimeType": "image/png"}]
     gltf.json["textures"] = [{"source": 0}]
@@ -80,7 +80,7 @@ def test_without_indices_and_without_uvs(tmp_path: Path):
     ("dtype", "top", "more"),
     [("u1", 255, {}), ("<u2", 65535, {}), ("i1", 127, {}), ("<i2", 32767, {})],
 )
-def test_normalised_integers(tmp_path: Path, dtype: str, top: int, more: dict[str, Any]):
+def test_normalized_integers(tmp_path: Path, dtype: str, top: int, more: dict[str, Any]):
     gltf = Gltf()
     primitive = triangle(gltf)
     stored = [(0, top), (top, 0), (top // 3, 0)]
@@ -92,7 +92,7 @@ def test_normalised_integers(tmp_path: Path, dtype: str, top: int, more: dict[st
     np.testing.assert_array_equal(mesh.corner_uvs[0, :, 1], 1 - expected[:, 1])
 
 
-def test_quantised_positions(tmp_path: Path):
+def test_quantized_positions(tmp_path: Path):
     gltf = Gltf()
     primitive = triangle(gltf)
     primitive["attributes"]["POSITION"] = gltf.accessor(np.array(CORNERS) * 100, "<u2")
@@ -263,7 +263,7 @@ def test_texcoord_chooses_the_uvs(tmp_path: Path):
     assert mesh.corner_uvs[0].tolist() == [[u, 1 - v] for u, v in other]
 
 
-def test_maps_of_different_uvs_take_the_base_colours_and_warn(tmp_path: Path):
+def test_maps_of_different_uvs_take_the_base_colors_and_warn(tmp_path: Path):
     mesh = textured(normalTexture={"index": 0, "texCoord": 1}).load(tmp_path)
     assert mesh.corner_uvs[0, 1].tolist() == [0.25, 0.5]
     assert "those of base_color are taken for all" in mesh.warnings[0]
@@ -326,7 +326,7 @@ def test_what_is_lost_is_said(tmp_path: Path):
     primitive["material"] = 0
     mesh = gltf.load(tmp_path)
     said = " ".join(mesh.warnings)
-    for what in ("animations", "bind pose", "vertex colours", "morph targets", "clearcoat"):
+    for what in ("animations", "bind pose", "vertex colors", "morph targets", "clearcoat"):
         assert what in said
     assert mesh.positions[0].tolist() == [0, 0, 0]
 

@@ -43,11 +43,11 @@ def test_an_invisible_material_is_a_mistake(tmp_path: Path):
     assert mesh.warnings == ("material 'm': invisible, taken as opaque",)
 
 
-def test_one_number_is_a_grey(tmp_path: Path):
+def test_one_number_is_a_gray(tmp_path: Path):
     assert material(tmp_path, "Kd .5\n").base_color[:3] == (0.5, 0.5, 0.5)
 
 
-def test_base_colour_map_keeps_its_bytes_and_its_factor(tmp_path: Path):
+def test_base_color_map_keeps_its_bytes_and_its_factor(tmp_path: Path):
     mesh = load(tmp_path, "Kd 1 .5 1\nmap_Kd wood.png\n", wood_png=image())
     assert mesh.textures[0].data == image()
     assert (mesh.textures[0].name, mesh.textures[0].mime) == ("wood.png", "image/png")
@@ -73,11 +73,11 @@ def test_norm_goes_before_bump(tmp_path: Path):
     assert mesh.warnings == ("a.mtl:2: 'b.png': bump gives way to 'n.png'",)
 
 
-def test_a_grey_bump_is_no_normal_map(tmp_path: Path):
+def test_a_gray_bump_is_no_normal_map(tmp_path: Path):
     mesh = load(tmp_path, "map_Bump b.png\n", b_png=image(color=(90, 90, 90)))
     assert mesh.materials[0].maps == {}
     assert mesh.textures == ()
-    assert mesh.warnings == ("a.mtl:2: 'b.png': a grey height map, not a normal map: left out",)
+    assert mesh.warnings == ("a.mtl:2: 'b.png': a gray height map, not a normal map: left out",)
 
 
 def test_emissive_map_without_factor_shines(tmp_path: Path):
@@ -134,7 +134,7 @@ def test_unsupported_maps_are_named(tmp_path: Path, keyword: str):
     assert "other.png" in warning
 
 
-def test_base_colour_repeated_as_ambient_is_no_loss(tmp_path: Path):
+def test_base_color_repeated_as_ambient_is_no_loss(tmp_path: Path):
     assert load(tmp_path, "map_Kd w.png\nmap_Ka w.png\n", w_png=image()).warnings == ()
 
 

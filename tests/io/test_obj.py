@@ -77,10 +77,10 @@ def test_ways_of_writing_the_same_triangle(text: str):
     assert mesh.warnings == ()
 
 
-def test_vertex_colours_are_left_out_with_a_warning():
+def test_vertex_colors_are_left_out_with_a_warning():
     mesh = read("v 0 0 0 .5 .5 .5\nv 1 0 0 1 1 1\nv 0 1 0 0 0 0\nf 1 2 3\n")
     assert corners(mesh) == [[[0, 0, 0], [1, 0, 0], [0, 1, 0]]]
-    assert mesh.warnings == ("a.obj: left out vertex colours, first in line 1",)
+    assert mesh.warnings == ("a.obj: left out vertex colors, first in line 1",)
 
 
 def test_faces_with_and_without_uv_mix():

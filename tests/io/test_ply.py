@@ -74,10 +74,10 @@ def test_corner_uvs_and_their_textures(tmp_path: Path):
     assert mesh.warnings == ("a.ply: image 'gone.png' not found",)
 
 
-def test_vertex_colours_are_left_out_with_a_warning():
+def test_vertex_colors_are_left_out_with_a_warning():
     header = VERTEX + "property uchar red\n" + FACE.format(1)
     mesh = read(text(header, SQUARE.replace("\n", " 9\n") + "3 0 1 2\n"))
-    assert mesh.warnings == ("a.ply: left out vertex colours",)
+    assert mesh.warnings == ("a.ply: left out vertex colors",)
 
 
 @pytest.mark.parametrize(

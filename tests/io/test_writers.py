@@ -255,7 +255,7 @@ def test_glb_colors_are_linear(mesh: TexturedMesh, tmp_path: Path) -> None:
 def test_colors_that_do_not_fit_are_refused(mesh: TexturedMesh, tmp_path: Path) -> None:
     with pytest.raises(MeshError, match=r"expected shape \(4, 4\)"):
         write_mesh(mesh, tmp_path / "out.glb", np.ones((3, 4), np.float32))
-    with pytest.raises(MeshError, match="STL holds no colours"):
+    with pytest.raises(MeshError, match="STL holds no colors"):
         write_mesh(mesh, tmp_path / "out.stl", np.ones((4, 4), np.float32))
     assert not list(tmp_path.iterdir())
 

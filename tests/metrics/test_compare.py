@@ -24,7 +24,7 @@ def test_a_mesh_equals_itself() -> None:
     assert report["color"]["psnr"] > 90
     assert report["surface"] == {"hidden": 0, "sheet": 0}
     assert report["spurious"] == {"count": 0, "area": 0}
-    assert report["parameterisation"]["original"] == report["parameterisation"]["decoded"]
+    assert report["parameterization"]["original"] == report["parameterization"]["decoded"]
 
 
 def test_parallel_planes_lie_their_gap_apart() -> None:
@@ -142,7 +142,7 @@ def test_without_uv_there_is_no_uv_group() -> None:
     bare = dataclasses.replace(mesh, uv_faces=np.full_like(mesh.uv_faces, -1))
     report = compare(bare, mesh, samples=FEW)
     assert "uv" not in report
-    assert "parameterisation" not in report
+    assert "parameterization" not in report
 
 
 def test_degenerate_faces_change_nothing() -> None:

@@ -8,7 +8,7 @@ import pytest
 from nispcodec.core.errors import QueryError
 from nispcodec.metrics.charts import chart_accuracy
 from nispcodec.metrics.color import color_at
-from nispcodec.metrics.parameterisation import distortion_summary, triangle_distortions
+from nispcodec.metrics.parameterization import distortion_summary, triangle_distortions
 from nispcodec.metrics.pictures import compare_pictures
 from nispcodec.metrics.psnr import CEILING, psnr
 from nispcodec.metrics.spurious import components, spurious_components

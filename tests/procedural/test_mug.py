@@ -56,7 +56,7 @@ def test_no_two_faces_share_a_texel(mug: TexturedMesh):
 
 
 def _coverage(triangles, size: int = 256):
-    """How many triangles hold each texel centre; centres are set off the triangles' edges."""
+    """How many triangles hold each texel center; centers are set off the triangles' edges."""
     count = np.zeros((size, size), dtype=int)
     for triangle in triangles * size - (0.5123, 0.4877):
         low, high = np.floor(triangle.min(axis=0)).astype(int), np.ceil(triangle.max(axis=0))

@@ -13,7 +13,7 @@ from nispcodec.core.document import Frame
 from tests.metrics.shapes import plane
 
 UNIT = Frame((0.5, 0.5, 0.0), 1.0)
-"""Puts the square of `plane` into the middle of the normalised frame."""
+"""Puts the square of `plane` into the middle of the normalized frame."""
 
 
 def texture(pixels: object, name: str = "t.png") -> Texture:

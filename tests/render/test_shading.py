@@ -65,12 +65,12 @@ def test_surfaces_towards_the_lamp_are_brighter() -> None:
     assert flat > right
 
 
-def test_colour_factors_are_linear_and_textures_are_srgb() -> None:
+def test_color_factors_are_linear_and_textures_are_srgb() -> None:
     white = render_views(square(base_color=[[(255, 255, 255)]]), [FRONT], 16, UNIT)[0]
-    grey = render_views(square(base_color=[[(188, 188, 188)]]), [FRONT], 16, UNIT)[0]
+    gray = render_views(square(base_color=[[(188, 188, 188)]]), [FRONT], 16, UNIT)[0]
     mesh = dataclasses.replace(plane(), materials=(Material(base_color=(0.5, 0.5, 0.5, 1.0)),))
     half = render_views(mesh, [FRONT], 16, UNIT)[0]
-    np.testing.assert_allclose(grey[8, 8], half[8, 8], atol=4e-3)
+    np.testing.assert_allclose(gray[8, 8], half[8, 8], atol=4e-3)
     assert half[8, 8, 0] < white[8, 8, 0]
 
 

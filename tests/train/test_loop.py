@@ -47,9 +47,9 @@ def ball_samples(count: int, seed: int) -> SampleSet:
     return SampleSet(points, sdf, (points[:, 0] > 0).astype(np.int32), points[:, :2])
 
 
-def sdf_task(steps: int = 300, rate: float = 1e-3, optimiser: str = "muon") -> Task:
+def sdf_task(steps: int = 300, rate: float = 1e-3, optimizer: str = "muon") -> Task:
     spec = NetworkSpec((16, 16), 1, w0=5.0)
-    schedule = Schedule(steps, 256, rate, optimiser)
+    schedule = Schedule(steps, 256, rate, optimizer)
     samples = ball_samples(4000, 0), ball_samples(500, 1)
     return Task("sdf", spec, *samples, relative_distance_loss, distance_error, schedule)
 
@@ -72,10 +72,10 @@ def module_of(network: Network) -> Module:
     return module
 
 
-@pytest.mark.parametrize("optimiser", ["muon", "adam"])
-def test_it_learns_a_ball(optimiser: str) -> None:
+@pytest.mark.parametrize("optimizer", ["muon", "adam"])
+def test_it_learns_a_ball(optimizer: str) -> None:
     seen: list[Progress] = []
-    run(sdf_task(rate=3e-3, optimiser=optimiser), seen.append)
+    run(sdf_task(rate=3e-3, optimizer=optimizer), seen.append)
     assert seen[-1].error < 0.07
     assert seen[-1].error < seen[0].error
     assert (seen[-1].step, seen[-1].steps, seen[-1].seconds_left) == (300, 300, 0)
@@ -219,10 +219,10 @@ def test_matrices_find_the_minimum_of_a_badly_scaled_quadratic(
     target = torch.randn(54)
     scales = torch.cat([torch.logspace(-decades, 0, 6).repeat(8), torch.ones(6)])
     weights = torch.zeros(54, requires_grad=True)
-    optimiser = kind(weights, matrices)
+    optimizer = kind(weights, matrices)
     for step in range(600):
         weights.grad = (weights.detach() - target) * scales**2
-        optimiser.step(rate * (1 - step / 600))
+        optimizer.step(rate * (1 - step / 600))
     assert torch.allclose(weights, target, atol=0.02)
 
 

@@ -142,11 +142,11 @@ def written(network: Network) -> Network:
     return unpack(pack(tiny.document(sdf=network))).sdf
 
 
-@pytest.mark.parametrize("optimiser", ["muon", "adam"])
+@pytest.mark.parametrize("optimizer", ["muon", "adam"])
 @pytest.mark.parametrize("price", [0.0, 1e-4])
-def test_what_is_pruned_is_exactly_zero_in_the_file(optimiser: str, price: float) -> None:
+def test_what_is_pruned_is_exactly_zero_in_the_file(optimizer: str, price: float) -> None:
     rounding = Rounding(CURVATURES["sdf"], price) if price else None
-    task = replace(sdf_task(), schedule=Schedule(80, 128, optimiser=optimiser), rounding=rounding)
+    task = replace(sdf_task(), schedule=Schedule(80, 128, optimizer=optimizer), rounding=rounding)
     rng = np.random.default_rng(0)
     mask = {name: rng.random(kept.shape) < 0.4 for name, kept in everything(task.spec).items()}
     network = written(train(task, 0, "cpu", threading.Lock(), silent, mask))
@@ -203,7 +203,7 @@ def test_a_network_that_would_be_a_constant_is_an_error() -> None:
         fit(task, 0, "cpu", threading.Lock(), silent)
 
 
-def test_rounds_are_told_and_only_the_last_is_quantised() -> None:
+def test_rounds_are_told_and_only_the_last_is_quantized() -> None:
     seen: list[Progress] = []
     rounding = Rounding(CURVATURES["sdf"], 1e-4)
     task = replace(sdf_task(), schedule=Schedule(50, 128), rounding=rounding)
@@ -211,7 +211,7 @@ def test_rounds_are_told_and_only_the_last_is_quantised() -> None:
     network = fit(task, 0, "cpu", threading.Lock(), seen.append)
     stages = list(dict.fromkeys(update.stage for update in seen))
     fits = [f"fit, round {number} of 3" for number in (1, 2, 3)]
-    assert stages == [*fits, "quantise, round 3 of 3"]
+    assert stages == [*fits, "quantize, round 3 of 3"]
     assert seen[-1].seconds_left == 0
     assert network.steps
     for name in everything(task.spec):

@@ -238,7 +238,7 @@ class _Scene:
 
     def _warn_of_losses(self, primitive: Element, attributes: Element) -> None:
         if attributes.get("COLOR_0") is not None:
-            self._warn(f"{primitive.file}: left out vertex colours")
+            self._warn(f"{primitive.file}: left out vertex colors")
         if primitive.get("targets") is not None:
             self._warn(f"{primitive.file}: left out morph targets")
 

@@ -93,7 +93,7 @@ class Buffers:
         return memoryview(buffer)[offset : offset + length]
 
     def numbers(self, index: int, width: int) -> Float64Array:
-        """(n, width) float64 of an accessor; normalised integers become fractions."""
+        """(n, width) float64 of an accessor; normalized integers become fractions."""
         accessor = self._root.entry("accessors", index)
         values = self._values(accessor, width)
         finite = np.isfinite(values).all(axis=1)

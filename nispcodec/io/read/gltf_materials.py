@@ -142,7 +142,7 @@ class GltfMaterials:
         return (_WRAPS[modes[0]], _WRAPS[modes[1]]), chosen
 
     def _uv_source(self, infos: dict[str, Element], material: Element) -> UvSource:
-        """Those of the base colour, else of the first map; a mesh here has one set of UVs."""
+        """Those of the base color, else of the first map; a mesh here has one set of UVs."""
         sources = [_uv_source(info) for info in infos.values()]
         if len(set(sources)) > 1:
             self._warnings.append(
@@ -166,7 +166,7 @@ class GltfMaterials:
 
 
 def _texture_infos(material: Element, glossy: Element | None) -> Iterator[tuple[str, Element]]:
-    """Slot and textureInfo of each map, base colour first."""
+    """Slot and textureInfo of each map, base color first."""
     metallic = material.get("pbrMetallicRoughness")
     candidates = (
         ("base_color", glossy, "diffuseTexture"),
@@ -186,7 +186,7 @@ Factors = tuple[tuple[float, float, float, float], float, float]
 
 
 def _metallic_factors(material: Element) -> Factors:
-    """Base colour, metallic, roughness."""
+    """Base color, metallic, roughness."""
     pbr = material.get("pbrMetallicRoughness") or Element({}, material.file, material.path)
     color = _color(pbr, "baseColorFactor")
     return (

@@ -91,7 +91,7 @@ class _Statements:
         words = line.split()
         self.positions.extend(wavefront.numbers(words[1:], 3, self._place())[:3])
         if len(words) > 6:
-            self._leave_out("vertex colours")
+            self._leave_out("vertex colors")
 
     def _uv(self, line: bytes) -> None:
         values = wavefront.numbers(line.split()[1:], 1, self._place())

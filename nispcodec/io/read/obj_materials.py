@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from nispcodec.core.asset import Material, Texture, TextureMap
 from nispcodec.core.errors import MeshError
 from nispcodec.io.folder import Folder
-from nispcodec.io.images import TextureShelf, is_grey
+from nispcodec.io.images import TextureShelf, is_gray
 from nispcodec.io.read.mtl import MapStatement, MtlMaterial, is_number, parse_mtl
 
 # Keyword of an image statement -> slot; of two for one slot the first in this list wins.
@@ -107,8 +107,8 @@ class MaterialReader:
             self._warn(statement, "image not found")
             return None
         data = self._folder.read(path)
-        if "bump" in keyword and is_grey(data, str(path)):
-            self._warn(statement, "a grey height map, not a normal map: left out")
+        if "bump" in keyword and is_gray(data, str(path)):
+            self._warn(statement, "a gray height map, not a normal map: left out")
             return None
         self._warn_of_options(statement)
         texture = self._shelf.add(path.name, data, str(path))
@@ -128,7 +128,7 @@ class MaterialReader:
     def _warn_of_others(self, found: MtlMaterial) -> None:
         base = found.maps["map_kd"].reference if "map_kd" in found.maps else None
         for keyword, statement in found.maps.items():
-            # Exporters often repeat the base colour as the ambient one.
+            # Exporters often repeat the base color as the ambient one.
             repeated = keyword == "map_ka" and statement.reference == base
             if keyword not in SLOT_OF and not repeated:
                 self._warn(statement, f"{keyword} is not supported")

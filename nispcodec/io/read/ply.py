@@ -66,7 +66,7 @@ def read_ply(data: bytes, name: str, folder: Folder) -> TexturedMesh:
         raise MeshError(f"{name}: expected elements vertex and face, found {list(elements)}")
     warnings: list[str] = []
     if "red" in vertex.columns:
-        warnings.append(f"{name}: left out vertex colours")
+        warnings.append(f"{name}: left out vertex colors")
     materials, textures = _materials(header.textures, name, folder, warnings)
     return _assembled(vertex, face, materials, textures, warnings, name)
 

@@ -49,8 +49,8 @@ def _cut_all(polygons: Float64Array) -> Int64Array:
 
 def _newell(polygons: Float64Array) -> Float64Array:
     """(..., n, 3) -> (..., 3): normals whose length is twice the area."""
-    centred = polygons - polygons[..., :1, :]
-    normal: Float64Array = np.cross(centred, np.roll(centred, -1, axis=-2)).sum(axis=-2)
+    centered = polygons - polygons[..., :1, :]
+    normal: Float64Array = np.cross(centered, np.roll(centered, -1, axis=-2)).sum(axis=-2)
     return normal
 
 

@@ -1,4 +1,4 @@
-"""Meshes with a colour at each vertex instead of textures."""
+"""Meshes with a color at each vertex instead of textures."""
 
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ from nispcodec.core.errors import MeshError
 
 
 def untextured(mesh: TexturedMesh, colors: Float32Array) -> TexturedMesh:
-    """The mesh with one plain material, ready to carry colours; MeshError if they do not fit."""
+    """The mesh with one plain material, ready to carry colors; MeshError if they do not fit."""
     if colors.shape != (len(mesh.positions), 4):
         raise MeshError(f"colors: expected shape ({len(mesh.positions)}, 4), found {colors.shape}")
     blended = bool((colors[:, 3] < 1).any())
-    material = Material("vertex colours", alpha_mode="blend" if blended else "opaque")
+    material = Material("vertex colors", alpha_mode="blend" if blended else "opaque")
     return replace(
         mesh,
         uvs=np.zeros((0, 2)),

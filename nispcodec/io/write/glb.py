@@ -28,7 +28,7 @@ def glb_bytes(mesh: TexturedMesh, colors: Float32Array | None = None) -> bytes:
     """The mesh as the bytes of a GLB file: V is flipped to glTF's top-left origin.
 
     A mesh far from the origin gets its place from its node, not from its float32 coordinates.
-    Colours (n, 4), sRGB-encoded, become COLOR_0 in linear light.
+    Colors (n, 4), sRGB-encoded, become COLOR_0 in linear light.
     """
     return _Builder(colors).build(mesh)
 

@@ -23,7 +23,7 @@ def obj_files(
 ) -> dict[str, bytes]:
     """File name -> bytes of STEM.obj, STEM.mtl and one STEM_NAME for every texture in use.
 
-    Colours (n, 4) stand behind the positions, as many tools read them, without alpha; then there
+    Colors (n, 4) stand behind the positions, as many tools read them, without alpha; then there
     is no MTL.
     Occlusion and metallic-roughness maps are left out, and images used by nothing else with them.
     """

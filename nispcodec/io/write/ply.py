@@ -1,4 +1,4 @@
-"""Binary PLY: vertices with texture coordinates or colours; no materials."""
+"""Binary PLY: vertices with texture coordinates or colors; no materials."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from nispcodec.io.write.vertices import origin, split_vertices
 def ply_bytes(mesh: TexturedMesh, colors: Float32Array | None = None) -> bytes:
     """The mesh as the bytes of a binary little-endian PLY file.
 
-    A seam's vertices are doubled for their UVs s, t; colours (n, 4) become red, green, blue, alpha.
+    A seam's vertices are doubled for their UVs s, t; colors (n, 4) become red, green, blue, alpha.
     Coordinates take eight bytes when the mesh is far from the origin.
     """
     vertices = split_vertices(mesh, np.arange(len(mesh.faces)))

@@ -14,10 +14,10 @@ from nispcodec.core.errors import MeshError
 def stl_bytes(mesh: TexturedMesh, colors: Float32Array | None = None) -> bytes:
     """The mesh as the bytes of a binary STL file; UVs and materials are left out.
 
-    Raises MeshError for colours.
+    Raises MeshError for colors.
     """
     if colors is not None:
-        raise MeshError("STL holds no colours: expected .glb, .ply or .obj")
+        raise MeshError("STL holds no colors: expected .glb, .ply or .obj")
     a, b, c = mesh.corners.transpose(1, 0, 2)
     normals = np.cross(b - a, c - a)
     lengths = np.linalg.norm(normals, axis=1, keepdims=True)

@@ -1,4 +1,4 @@
-"""What the networks minimise, and what says how good they are."""
+"""What the networks minimize, and what says how good they are."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from nispcodec.train.backend.torch.module import Module
 from nispcodec.train.task import Batch, Curvature
 
 NEAR = 0.01
-"""Distances (normalised frame) well below this count in full in the relative loss."""
+"""Distances (normalized frame) well below this count in full in the relative loss."""
 
 FAR_OFF = 0.01
 """A UV that is further off than this is wrong, however far."""
@@ -18,7 +18,7 @@ FAR_OFF = 0.01
 SIGN_WEIGHT = 1.8
 """Below 2 the loss is least where the field is the distance; above, near points are pushed away."""
 SIGN_SOFTNESS = 2e-3
-"""How sure of its sign a field should be: about this far from zero (normalised frame)."""
+"""How sure of its sign a field should be: about this far from zero (normalized frame)."""
 
 BENT_SDF, BENT_UV = 5e-5, 1e-4
 """The kink of an absolute error is taken as if it were as round as this."""

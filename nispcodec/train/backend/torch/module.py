@@ -26,7 +26,7 @@ class Module:
 
     All its numbers are one vector, in file order, so that rounding, clipping and charging are one
     operation each. Sine layers hold w0 W and w0 b, which saves a pass over the activations. Once
-    rounded (`nispcodec.train.quantise`), each tensor is a multiple of its step in `steps`. Once
+    rounded (`nispcodec.train.quantize`), each tensor is a multiple of its step in `steps`. Once
     pruned, `kept` is 1 or 0 for each number, and what is pruned is 0 after every `hold`. `band`
     scales the frequencies that it starts with; `first` is what was drawn.
     """
@@ -56,7 +56,7 @@ class Module:
         return {name: w0 if name in hidden else 1.0 for name in self.spec.shapes}
 
     def matrices(self, last: float) -> tuple[Matrices, Matrices]:
-        """What an optimiser sees together, and its rate relative to the schedule's.
+        """What an optimizer sees together, and its rate relative to the schedule's.
 
         Of each layer [W | b], and of the tables a row for each chart: where its numbers are in the
         vector. First those from one hidden layer to the next, then all others; `last` is the rate
@@ -223,7 +223,7 @@ def _bounds(spec: NetworkSpec) -> dict[str, float]:
 
 
 def _weight_bound(spec: NetworkSpec, layer: int, fan_in: int) -> float:
-    """SIREN's initialisation; He-uniform where w0 is 1 (the paper) and for relu."""
+    """SIREN's initialization; He-uniform where w0 is 1 (the paper) and for relu."""
     if spec.activation == "relu" or spec.w0 == 1.0:
         return math.sqrt(6 / fan_in)
     if layer == 0:

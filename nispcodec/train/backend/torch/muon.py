@@ -24,7 +24,7 @@ TINY = 1e-12
 
 
 class Muon:
-    """Minimises over `matrices` of a vector of weights. Call `step` after `backward`.
+    """Minimizes over `matrices` of a vector of weights. Call `step` after `backward`.
 
     The momentum holds about this `share` of all gradients so far.
     """

@@ -31,7 +31,7 @@ class _State:
 
 
 class Soap:
-    """Minimises over `matrices` of a vector of weights. Call `step` after `backward`."""
+    """Minimizes over `matrices` of a vector of weights. Call `step` after `backward`."""
 
     state: _State | None = None
 

@@ -16,9 +16,9 @@ Move = Callable[[float], None]
 """To be called after `backward`, with the rate."""
 
 
-def optimiser(module: Module, schedule: Schedule) -> Move:
+def optimizer(module: Module, schedule: Schedule) -> Move:
     """A new one, which remembers nothing yet."""
-    if schedule.optimiser == "adam":
+    if schedule.optimizer == "adam":
         return _adam(module.weights)
     hidden, others = module.matrices(schedule.last)
     soap = Soap(module.weights, others)

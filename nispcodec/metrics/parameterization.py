@@ -14,7 +14,7 @@ COLLAPSED = 1e6
 def triangle_distortions(surface: Surface) -> Float64Array:
     """max(sigma_max, 1 / sigma_min) of each textured triangle's map from surface to UV.
 
-    Sorkine et al. 2002, and the paper's section on distortion; the surface is in the normalised
+    Sorkine et al. 2002, and the paper's section on distortion; the surface is in the normalized
     frame, so the number depends on the scale of the UV layout. Infinite where the UV triangle has
     no area; triangles without area on the surface are left out.
     """

@@ -1,6 +1,6 @@
-"""Small sine networks pruned, quantised, both, or narrower: bytes in a file and held-out error.
+"""Small sine networks pruned, quantized, both, or narrower: bytes in a file and held-out error.
 
-    python -m benchmarks.pruning_or_quantising --assets ../shared/assets [--table]
+    python -m benchmarks.pruning_or_quantizing --assets ../shared/assets [--table]
 
 SDF and UV networks of each asset and seed: float16 and lottery tickets of it at `RATES`, rounded
 at `PRICES`, and both: the tickets' masks held, and what is left rounded at `BOTH`; and networks of
@@ -8,7 +8,7 @@ at `PRICES`, and both: the tickets' masks held, and what is left rounded at `BOT
 from the same weights. Kept case by case: an interrupted run goes on.
 The default takes a quarter of an hour of one core, and leaves all networks far from what they can
 reach; `--steps 4000` says more. `--table` trains nothing. In the table each setting is beside
-float16, unpruned, and beside the curve of quantising alone: bytes at the same error, below 1 where
+float16, unpruned, and beside the curve of quantizing alone: bytes at the same error, below 1 where
 pruning, or a narrower network, pays.
 """
 
@@ -52,7 +52,7 @@ from nispcodec.train.prune import Mask
 from nispcodec.train.sizing import even_width
 from nispcodec.train.task import Rounding, Schedule, Task
 
-RESULTS = Path("benchmarks/results/pruning_or_quantising.json")
+RESULTS = Path("benchmarks/results/pruning_or_quantizing.json")
 ASSETS = ("spot", "chess_king", "tea_set_01")
 NETWORKS = ("sdf", "uv")
 SEEDS = 2
@@ -166,8 +166,8 @@ def _write(path: Path, cases: list[Record]) -> None:
     write_atomic(path, json.dumps(record, indent=1).encode() + b"\n")
 
 
-def against_quantised(case: Record, point: Record) -> float:
-    """Bytes of a point relative to quantising alone at the same error; NaN out of its reach."""
+def against_quantized(case: Record, point: Record) -> float:
+    """Bytes of a point relative to quantizing alone at the same error; NaN out of its reach."""
     alone = [
         (each["bytes"], each["error"])
         for each in case["points"]
@@ -182,7 +182,7 @@ def against_quantised(case: Record, point: Record) -> float:
 def table(cases: Sequence[Record]) -> Iterator[str]:
     """Markdown: geometric means over the cases of each network."""
     columns = "network", "pruned", "width", "price", "bytes", "error / float16"
-    yield f"| {' | '.join(columns)} | bytes / quantised alone | cases |"
+    yield f"| {' | '.join(columns)} | bytes / quantized alone | cases |"
     yield "|---|---|---|---|---|---|---|---|"
     for network in NETWORKS:
         alike = [case for case in cases if case["network"] == network]
@@ -196,7 +196,7 @@ def _row(network: str, cases: Sequence[Record], index: int) -> str:
         point["error"] / case["points"][0]["error"]
         for case, point in zip(cases, points, strict=True)
     ]
-    ratios = [against_quantised(*pair) for pair in zip(cases, points, strict=True)]
+    ratios = [against_quantized(*pair) for pair in zip(cases, points, strict=True)]
     reached = [ratio for ratio in ratios if np.isfinite(ratio)]
     beside = f"{_mean(reached):.2f} ({len(reached)})" if reached else "-"
     size, price = _mean([point["bytes"] for point in points]), points[0]["price"]

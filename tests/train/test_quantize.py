@@ -20,7 +20,7 @@ from nispcodec.train.backend.torch.losses import CURVATURES
 from nispcodec.train.backend.torch.module import Module, snapped
 from nispcodec.train.loop import train
 from nispcodec.train.prune import everything
-from nispcodec.train.quantise import HEAD, nearest, round_weights, shared_step
+from nispcodec.train.quantize import HEAD, nearest, round_weights, shared_step
 from nispcodec.train.task import Batch, Curvature, Rounding
 from tests.train.test_loop import ball_samples, module_of, sdf_task
 
@@ -73,7 +73,7 @@ def alone(before: Module, after: Module) -> Module:
     """A copy, each weight rounded to the nearest symbol of its own, on the other's grid."""
     assert after.steps is not None
     module = Module(before.spec, "cpu")
-    octaves = np.concatenate([tensor.octaves for tensor in records.tensors("sdf", after.network())])
+    octaves = np.concatenate([tensor.row_shifts for tensor in records.tensors("sdf", after.network())])
     grid = after.steps[after.groups] * 2 ** torch.from_numpy(octaves)[after.rows]
     module.weights.data = ((before.weights.detach() / grid).round() * grid).float()
     return module
@@ -149,7 +149,7 @@ def test_a_budget_is_kept(bits: float) -> None:
     found = sum(
         moves.size * max(0.0, math.log2(float(np.abs(moves).mean()) * 5.18))
         for moves in (
-            each.values(each.octaves, True) for each in records.tensors("sdf", module.network())
+            each.values(each.row_shifts, True) for each in records.tensors("sdf", module.network())
         )
         if moves.any()
     )
@@ -189,9 +189,9 @@ def test_weights_that_are_not_finite_are_an_error() -> None:
 def test_blocks_make_up_for_each_other(monkeypatch: pytest.MonkeyPatch) -> None:
     part, off = batch("sdf"), []
     for size, shares in ((40, (0.0,)), (40, (0.0, 0.1, 0.3, 1.0))):
-        monkeypatch.setattr("nispcodec.train.quantise.WHOLE", 0)
-        monkeypatch.setattr("nispcodec.train.quantise.BLOCK", size)
-        monkeypatch.setattr("nispcodec.train.quantise.SHARES", shares)
+        monkeypatch.setattr("nispcodec.train.quantize.WHOLE", 0)
+        monkeypatch.setattr("nispcodec.train.quantize.BLOCK", size)
+        monkeypatch.setattr("nispcodec.train.quantize.SHARES", shares)
         before, after = rounded("sdf", 1e-7)
         off.append(float((outputs(before, part) - outputs(after, part)).abs().mean()))
     assert off[1] < 0.9 * off[0]
