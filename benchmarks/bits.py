@@ -22,7 +22,8 @@ from nispcodec.core.network import Network
 from nispcodec.format import records, unpack, weights
 from nispcodec.format.constants import NETS
 from nispcodec.format.container import read_container, write_container
-from nispcodec.train.quantize import GAUSSIAN_BITS, HEAD
+from nispcodec.train.config import QuantizeConfig
+from nispcodec.train.quantize import GAUSSIAN_BITS
 
 Record = dict[str, float]
 
@@ -36,7 +37,7 @@ def symbols_of(network: Network) -> list[Float64Array]:
 def entropy(symbols: Float64Array) -> float:
     """Bits of a tensor as the encoder counts them."""
     log_spread = 0.5 * np.log2(np.square(symbols).mean() + 1e-12) + GAUSSIAN_BITS
-    return float(symbols.size * np.logaddexp2(0, 2 * log_spread) / 2) + HEAD
+    return float(symbols.size * np.logaddexp2(0, 2 * log_spread) / 2) + QuantizeConfig.header_bits
 
 
 def written(network: Network) -> int:

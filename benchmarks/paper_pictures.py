@@ -28,10 +28,10 @@ from nispcodec.core.asset import TexturedMesh
 from nispcodec.core.atomic_write import write_atomic
 from nispcodec.core.network import Network, NetworkSpec
 from nispcodec.core.progress import Progress
+from nispcodec.core.sample_set import SampleSet
 from nispcodec.dataset.recipes import TrainingSets, training_sets
-from nispcodec.dataset.sample_set import SampleSet
 from nispcodec.dataset.sampler import Sampler
-from nispcodec.encode.recipe import GAP
+from nispcodec.geometry.analysis import analyze
 from nispcodec.infer.evaluate import evaluate
 from nispcodec.io.load import load_mesh
 from nispcodec.metrics.color import color_at
@@ -47,16 +47,11 @@ from nispcodec.render.fragments import Scene
 from nispcodec.render.images import image_bytes
 from nispcodec.render.views import scene_of
 from nispcodec.train.backend.torch.module import Module
-from nispcodec.train.presets import (
-    BATCH,
-    EFFORTS,
-    MEMORIES,
-    RATES,
-    SHARES,
-    paper_tasks,
-    steps_in,
-)
-from nispcodec.train.task import Batch, Schedule, Task
+from nispcodec.train.batch import Batch
+from nispcodec.train.config import TrainConfig
+from nispcodec.train.objectives import UvObjective
+from nispcodec.train.task import Schedule, Task
+from nispcodec.train.tasks import paper_tasks, steps_in
 from nispcodec.train.workers import fit_networks
 
 RESULTS = Path("benchmarks/results/paper_pictures.json")
@@ -72,24 +67,34 @@ Painter = Callable[[Float32Array], Float32Array]
 """Points (n, 3), normalized frame -> base colors (n, 3), sRGB-encoded."""
 
 
-def target_error(module: Module, batch: Batch) -> Tensor:
-    """Mean absolute error of a network that is told the point alone; `uv` holds its targets."""
-    return (module(batch.points) - batch.uv).abs().mean()
+class PointObjective(UvObjective):
+    """Mean absolute error of a network that sees the point alone; `uv` holds its targets."""
+
+    def loss(self, module: Module, batch: Batch) -> Tensor:
+        """See the class."""
+        return (module(batch.points) - batch.uv).abs().mean()
+
+    def error(self, module: Module, batch: Batch) -> Tensor:
+        """The same."""
+        return self.loss(module, batch)
 
 
 def baselines(mesh: TexturedMesh, model: NispModel, seed: int, threads: int) -> dict[str, Network]:
     """The networks "unconditioned" and "color", fitted."""
-    sampler = Sampler(mesh, seed, gap=GAP)
-    sets, surface = training_sets(sampler), Surface.of(mesh, sampler.frame)
+    random = np.random.default_rng(seed)
+    analysis = analyze(mesh, random)
+    sets = training_sets(Sampler(analysis, random))
+    surface = Surface.of(mesh, analysis.frame)
     specs = {name: model.document.networks[name].spec for name in _UV}
     plain = replace(specs["uv"], conditioning="none", charts=0, embedding=0)
     as_large = _of_size(sum(spec.weight_count for spec in specs.values()))
-    colored = _colored(sets.textured, surface), _colored(sets.held_skin, surface)
+    colored = _colored(sets.uvs, surface), _colored(sets.held_out_surface, surface)
     schedule = _schedule(model, sets)
+    objective = PointObjective(TrainConfig().loss)
     tasks = [
-        Task(name, spec, *samples, target_error, target_error, schedule)
+        Task(name, spec, *samples, objective, schedule)
         for name, spec, samples in (
-            ("unconditioned", plain, (sets.textured, sets.held_skin)),
+            ("unconditioned", plain, (sets.uvs, sets.held_out_surface)),
             ("color", as_large, colored),
         )
     ]
@@ -103,10 +108,13 @@ def _schedule(model: NispModel, sets: TrainingSets) -> Schedule:
     """How the preset of the model fits its UV network, but for first frequencies and rounding."""
     preset = str(model.document.info.get("preset", "balanced"))
     if preset == "paper":
-        tasks = paper_tasks(len(model.document.charts), sets)
+        tasks = paper_tasks(len(model.document.charts), sets, TrainConfig())
         return next(task.schedule for task in tasks if task.name == "uv")
-    seconds, spec = EFFORTS[preset].seconds * SHARES["uv"], model.document.networks["uv"].spec
-    return Schedule(steps_in(seconds, spec), BATCH, RATES["uv"], memory=MEMORIES["uv"])
+    config, spec = TrainConfig(), model.document.networks["uv"].spec
+    learning = config.networks["uv"]
+    steps = steps_in(config.budgets[preset].seconds * learning.time_share, spec, config)
+    rate, share = learning.learning_rate, learning.momentum_share
+    return Schedule(steps, config.batch, rate, momentum_share=share)
 
 
 def _of_size(weights: int) -> NetworkSpec:

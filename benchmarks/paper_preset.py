@@ -19,9 +19,10 @@ import nispcodec
 from benchmarks.machine import commit, machine, versions
 from nispcodec.core.atomic_write import write_atomic
 from nispcodec.core.progress import Progress
+from nispcodec.encode.config import Tuning
 from nispcodec.format import pack
 from nispcodec.io.load import load_mesh
-from nispcodec.train import presets
+from nispcodec.train.config import PaperConfig, TrainConfig
 
 RESULTS = "benchmarks/results/paper_preset.json"
 POINTS = 100
@@ -51,10 +52,10 @@ class Curve:
 
 def measure(source: Path, steps: int) -> dict[str, Any]:
     """Encode with the preset; no textures, as sizes are of networks and tables."""
-    presets.PAPER_STEPS = steps
+    training = TrainConfig(paper=PaperConfig(steps=steps))
     curve = Curve()
     config = nispcodec.EncodeConfig(preset="paper", textures=False)
-    model = nispcodec.encode(load_mesh(source), config, curve)
+    model = nispcodec.encode(load_mesh(source), config, curve, Tuning(training=training))
     return {
         "asset": source.stem,
         "steps": steps,
@@ -70,7 +71,7 @@ def measure(source: Path, steps: int) -> dict[str, Any]:
 @click.command()
 @click.argument("source", type=click.Path(path_type=Path, exists=True))
 @click.option("-o", "--output", type=click.Path(path_type=Path), default=RESULTS, show_default=True)
-@click.option("--steps", type=click.IntRange(1), default=presets.PAPER_STEPS, show_default=True)
+@click.option("--steps", type=click.IntRange(1), default=PaperConfig.steps, show_default=True)
 def main(source: Path, output: Path, steps: int) -> None:
     """Run the preset on SOURCE and write the JSON."""
     result = {

@@ -32,25 +32,19 @@ from benchmarks.machine import commit, machine, versions
 from nispcodec.core.atomic_write import write_atomic
 from nispcodec.core.network import Network, NetworkSpec
 from nispcodec.core.progress import silent
+from nispcodec.core.sample_set import SampleSet
 from nispcodec.dataset.recipes import training_sets
-from nispcodec.dataset.sample_set import SampleSet
 from nispcodec.dataset.sampler import Sampler
-from nispcodec.encode.recipe import GAP
+from nispcodec.geometry.analysis import analyze
 from nispcodec.infer.evaluate import evaluate
 from nispcodec.io.load import load_mesh
-from nispcodec.train.backend.torch.losses import (
-    CURVATURES,
-    distance_error,
-    relative_distance_loss,
-    uv_error,
-    uv_loss,
-)
+from nispcodec.train.config import TrainConfig
 from nispcodec.train.loop import train
-from nispcodec.train.lottery_ticket import tickets
-from nispcodec.train.presets import PRICES as PRESET_PRICES
+from nispcodec.train.lottery_ticket import lottery_ticket
+from nispcodec.train.objectives import SdfObjective, UvObjective
 from nispcodec.train.prune import Mask
 from nispcodec.train.sizing import even_width
-from nispcodec.train.task import Rounding, Schedule, Task
+from nispcodec.train.task import Quantization, Schedule, Task
 
 RESULTS = Path("benchmarks/results/pruning_or_quantizing.json")
 ASSETS = ("spot", "chess_king", "tea_set_01")
@@ -71,15 +65,16 @@ Record = dict[str, Any]
 
 def networks(path: Path, steps: int) -> dict[str, Task]:
     """SDF 4 x 32 and UV 3 x 24, with the samples of the default preset."""
-    sampler = Sampler(load_mesh(path), SAMPLER_SEED, GAP)
-    sets, charts = training_sets(sampler), len(sampler.table)
+    random = np.random.default_rng(SAMPLER_SEED)
+    analysis = analyze(load_mesh(path), random)
+    sets, charts = training_sets(Sampler(analysis, random)), len(analysis.table)
     sdf = NetworkSpec((32,) * 4, 1)
     uv = NetworkSpec((24,) * 3, 2, conditioning="chart_affine", charts=charts, embedding=4)
-    distance, skin = (sets.distance, sets.held_distance), (sets.textured, sets.held_skin)
-    schedule = Schedule(steps, BATCH)
+    distance, surface = (sets.distance, sets.held_out_distance), (sets.uvs, sets.held_out_surface)
+    schedule, config = Schedule(steps, BATCH), TrainConfig().loss
     return {
-        "sdf": Task("sdf", sdf, *distance, relative_distance_loss, distance_error, schedule),
-        "uv": Task("uv", uv, *skin, uv_loss, uv_error, schedule),
+        "sdf": Task("sdf", sdf, *distance, SdfObjective(config), schedule),
+        "uv": Task("uv", uv, *surface, UvObjective(config), schedule),
     }
 
 
@@ -97,10 +92,11 @@ def measure(task: Task, seed: int) -> list[Record]:
     masks: dict[float, Mask] = {}
 
     def fitted(mask: Mask | None, price: float, width: float = 1.0) -> Network:
-        rounding = Rounding(CURVATURES[task.name], price * PRESET_PRICES[task.name])
+        preset = task.config.networks[task.name].lambda_
+        quantization = Quantization(price * preset)
         hidden = tuple(even_width(width * each) for each in task.spec.hidden)
         spec = replace(task.spec, hidden=hidden)
-        priced = replace(task, spec=spec, rounding=rounding if price else None)
+        priced = replace(task, spec=spec, quantization=quantization if price else None)
         return train(priced, seed, "cpu", nullcontext(), silent, mask)
 
     def add(network: Network, rate: float, price: float, width: float = 1.0) -> None:
@@ -115,7 +111,7 @@ def measure(task: Task, seed: int) -> list[Record]:
         add(halved(network), rate, 0.0)
         return network
 
-    for _ in tickets(task, "smallest", RATES, trained):
+    for _ in lottery_ticket(task, "smallest", RATES, trained):
         pass
     settings = [(0.0, price) for price in PRICES] + [(rate, BOTH) for rate in RATES]
     for rate, price in settings:

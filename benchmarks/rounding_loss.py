@@ -20,13 +20,14 @@ import click
 import nispcodec
 from benchmarks.models import measured, models_options
 from benchmarks.target import Record, Target
+from nispcodec import EncodeConfig
 from nispcodec.core.network import Network
-from nispcodec.encode.recipe import EncodeConfig
+from nispcodec.encode import fitting
 from nispcodec.io.load import load_mesh
 from nispcodec.metrics.compare import Reference
 from nispcodec.model import NispModel
-from nispcodec.train import workers as parallel
 from nispcodec.train.task import Task
+from nispcodec.train.workers import fit_networks
 
 RESULTS = Path("benchmarks/results/rounding_loss.json")
 PLACES = {
@@ -40,12 +41,11 @@ TARGETS = [Target(f"{name}: after / before", ("ratios", name), 1.15) for name in
 @contextmanager
 def floats() -> Iterator[None]:
     """Encodes within it leave their weights as they were fitted."""
-    rounded = parallel.fit_networks
 
     def fit(tasks: list[Task], *how: Any) -> dict[str, Network]:
-        return rounded([replace(task, rounding=None) for task in tasks], *how)
+        return fit_networks([replace(task, quantization=None) for task in tasks], *how)
 
-    with patch.object(parallel, "fit_networks", fit):
+    with patch.object(fitting, "fit_networks", fit):
         yield
 
 

@@ -12,10 +12,11 @@ from typing import TYPE_CHECKING
 
 from nispcodec.core.asset import Material, Texture, TexturedMesh, TextureMap
 from nispcodec.core.errors import FitError, FormatError, MeshError, NispError, QueryError
-from nispcodec.core.progress import Progress
-from nispcodec.encode.recipe import EncodeConfig, encode
+from nispcodec.core.progress import Listener, Progress, silent
+from nispcodec.encode.config import EncodeConfig
 
 if TYPE_CHECKING:
+    from nispcodec.encode.config import Tuning
     from nispcodec.model import NispModel
 
 __all__ = [
@@ -37,6 +38,18 @@ __all__ = [
 ]
 
 __version__ = "0.1.0"
+
+
+def encode(
+    mesh: TexturedMesh,
+    config: EncodeConfig | None = None,
+    progress: Listener = silent,
+    tuning: Tuning | None = None,
+) -> NispModel:
+    """Fit networks to an asset; see `nispcodec.encode.recipe.encode`."""
+    from nispcodec.encode import recipe
+
+    return recipe.encode(mesh, config, progress, tuning)
 
 
 def load(path: str | Path) -> NispModel:

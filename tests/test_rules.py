@@ -15,10 +15,10 @@ ROOT = Path(__file__).parent.parent
 # Folder -> third-party roots that it may import, and other folders of nispcodec.
 RULES: dict[str, tuple[set[str], set[str]]] = {
     "core": ({"numpy", "scipy", "PIL"}, set()),
-    "io": ({"numpy", "PIL"}, {"core", "geometry"}),
-    "geometry": ({"numpy", "scipy", "igl"}, {"core", "dataset"}),
+    "io": ({"numpy", "PIL"}, {"core"}),
+    "geometry": ({"numpy", "scipy", "igl"}, {"core"}),
     "dataset": ({"numpy", "scipy"}, {"core", "geometry"}),
-    "train": ({"numpy", "torch"}, {"core", "dataset", "geometry"}),
+    "train": ({"numpy", "torch"}, {"core", "dataset"}),
     "format": ({"numpy", "msgpack", "zstandard"}, {"core"}),
     "infer": ({"numpy", "threadpoolctl"}, {"core"}),
     "extract": ({"numpy", "scipy", "fast_simplification"}, {"core", "infer"}),

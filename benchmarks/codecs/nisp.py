@@ -10,7 +10,7 @@ import nispcodec
 from benchmarks.codecs import Setting
 from benchmarks.source import SEED, Source
 from nispcodec.core.asset import TexturedMesh
-from nispcodec.encode.recipe import PRESETS
+from nispcodec.encode.config import PRESETS
 from nispcodec.format import pack, unpack
 from nispcodec.model import NispModel
 

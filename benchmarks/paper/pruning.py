@@ -20,6 +20,7 @@ from typing import Any
 import click
 import numpy as np
 import torch
+from torch import Tensor
 
 from benchmarks.codings import stored
 from benchmarks.machine import commit, machine, versions
@@ -28,17 +29,23 @@ from benchmarks.paper.pruning_published import RATES, SIZED, SIZES
 from nispcodec.core.atomic_write import write_atomic
 from nispcodec.core.network import Network
 from nispcodec.core.progress import silent
-from nispcodec.dataset.recipes import SKIN, TrainingSets
-from nispcodec.dataset.sample_set import SampleSet
-from nispcodec.dataset.sampler import BETA, Sampler
+from nispcodec.core.sample_set import SampleSet
+from nispcodec.dataset.config import SamplingConfig
+from nispcodec.dataset.recipes import TrainingSets
+from nispcodec.dataset.sampler import Sampler
+from nispcodec.geometry.analysis import analyze
+from nispcodec.geometry.config import GeometryConfig
 from nispcodec.infer.evaluate import evaluate
 from nispcodec.io.load import load_mesh
-from nispcodec.train.backend.torch.losses import uv_loss
+from nispcodec.train.backend.torch.module import Module
+from nispcodec.train.batch import Batch
+from nispcodec.train.config import TrainConfig
 from nispcodec.train.loop import train
-from nispcodec.train.lottery_ticket import tickets
-from nispcodec.train.presets import paper_tasks
+from nispcodec.train.lottery_ticket import lottery_ticket
+from nispcodec.train.objectives import UvObjective
 from nispcodec.train.prune import STRATEGIES, Mask
 from nispcodec.train.task import Task
+from nispcodec.train.tasks import paper_tasks
 
 RESULTS, FIGURE = "benchmarks/results/pruning.json", "docs/pruning.png"
 ASSETS = ("spot", "chess_king")
@@ -49,14 +56,26 @@ SAMPLES, TEST = 200_000, 10_000
 Record = dict[str, Any]
 
 
+class AbsoluteUv(UvObjective):
+    """Judged by the paper's loss."""
+
+    def error(self, module: Module, batch: Batch) -> Tensor:
+        """Mean absolute error of u and v."""
+        return self.loss(module, batch)
+
+
 def paper_networks(path: Path, steps: int) -> list[Task]:
     """The chart and the UV network with the paper's losses, optimizer and rates."""
-    sampler = Sampler(load_mesh(path), SEED)
+    random = np.random.default_rng(SEED)
+    analysis = analyze(load_mesh(path), random, GeometryConfig(merging=None))
+    sampler = Sampler(analysis, random)
     samples, surface = sampler.importance(SAMPLES), sampler.surface(TEST)
-    sets = TrainingSets(samples, samples, sampler.near(1, SKIN), surface, samples, samples[:0])
-    _, chart, uv = paper_tasks(len(sampler.table), sets)
+    near = sampler.near_surface(1, SamplingConfig.uv_spread)
+    sets = TrainingSets(samples, samples, samples, near, surface, samples[:0])
+    _, chart, uv = paper_tasks(len(analysis.table), sets, TrainConfig())
     schedule = replace(chart.schedule, steps=steps, batch=BATCH)
-    return [replace(chart, schedule=schedule), replace(uv, schedule=schedule, error=uv_loss)]
+    judged = AbsoluteUv(TrainConfig().loss)
+    return [replace(chart, schedule=schedule), replace(uv, schedule=schedule, objective=judged)]
 
 
 def quality(network: Network, test: SampleSet) -> float:
@@ -79,7 +98,7 @@ def series(task: Task, strategy: str) -> list[Record]:
         click.echo(f"  {task.name} {strategy} {rate:.2%}: {found:.5f}", err=True)
         return network
 
-    for _ in tickets(task, strategy, RATES, trained):
+    for _ in lottery_ticket(task, strategy, RATES, trained):
         pass
     return rounds
 
@@ -137,7 +156,7 @@ def _write(path: Path, found: list[Record]) -> None:
     how = {
         "batch": BATCH,
         "samples": SAMPLES,
-        "importance": BETA,
+        "importance": SamplingConfig.beta,
         "test": TEST,
         "seed": SEED,
         "published": "2000 epochs of 10^6 samples, batches of 2048: 976,562 steps",

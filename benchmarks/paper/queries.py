@@ -9,7 +9,7 @@ import numpy as np
 from benchmarks.decoder import best_seconds, chart_and_uv, random_network
 from benchmarks.paper.row import Comparison
 from nispcodec.infer.evaluate import evaluate
-from nispcodec.train.presets import paper_chart, paper_sdf, paper_uv
+from nispcodec.train.tasks import paper_chart, paper_sdf, paper_uv
 
 TABLE = "Queries (section 5)"
 POINTS, CHARTS = 10_000, 16

@@ -1,4 +1,4 @@
-"""Where a wrong chart is seen: the charts beside a point have another color than its own."""
+"""How much a wrong chart is seen: the charts beside a sample have another color than its own."""
 
 from __future__ import annotations
 
@@ -8,23 +8,22 @@ from scipy.spatial import KDTree
 from nispcodec.core.arrays import Float64Array
 from nispcodec.core.asset import TexturedMesh
 from nispcodec.core.document import ChartTable
+from nispcodec.core.sample_set import SampleSet
 from nispcodec.core.texture import base_colors
-from nispcodec.dataset.sample_set import SampleSet
-
-NEIGHBORS = 16
-"""Samples that are looked at round each: those that a network may take it for."""
 
 
-def confusion(mesh: TexturedMesh, table: ChartTable, samples: SampleSet) -> Float64Array:
+def chart_error_weight(
+    mesh: TexturedMesh, table: ChartTable, samples: SampleSet, neighbors: int
+) -> Float64Array:
     """(n,) how far the colors of neighbors on other charts are off, 0 for those on its own.
 
-    The mean over the neighbors of root mean square differences of color and alpha.
+    The mean over so many neighbors of root mean square differences of color and alpha.
     """
     uvs = samples.uv * np.asarray(table.uv_scale) + np.asarray(table.uv_offset)
     owners, has_uv = table.materials[samples.chart], table.has_uv[samples.chart]
     shown = base_colors(mesh.materials, mesh.textures, owners, has_uv, uvs)
     colors = shown.astype(np.float64)
-    count = min(NEIGHBORS, len(samples))
+    count = min(neighbors, len(samples))
     near = KDTree(samples.points).query(samples.points, list(range(1, count + 1)), workers=-1)[1]
     total = np.zeros(len(samples))
     for other in near.T:

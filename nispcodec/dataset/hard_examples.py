@@ -1,4 +1,4 @@
-"""Samples that a signed field puts on the wrong side, and how much of the surface that costs.
+"""Hard examples: samples that a signed field puts on the wrong side, and what that costs.
 
 A thin part that the field misses hardly shows in a mean error of the field: it is a few samples,
 each off by less than the part is thick. What it costs the surface is the distance to what is left.
@@ -11,34 +11,36 @@ from scipy.spatial import cKDTree
 
 from nispcodec.core.arrays import Float32Array
 
-REACH = 0.075
-"""The nearest sample on the right side is sought no further away than this (normalized frame)."""
 
-
-def reaches(
-    points: Float32Array, sdf: Float32Array, field: Float32Array, strays: bool = False
+def error_radii(
+    points: Float32Array,
+    sdf: Float32Array,
+    field: Float32Array,
+    limit: float,
+    floaters: bool = False,
 ) -> Float32Array:
-    """How far every mistake reaches: 0 where `field` has the sign of `sdf`.
+    """(n,) how far the surface is off for each mistake: 0 where `field` has the sign of `sdf`.
 
-    points (n, 3), sdf (n,), field (n,) -> (n,): from a sample on the wrong side to the nearest one
-    that the field puts on the side where the former belongs; the surface is off by about that much.
-    With `strays`, mistakes further than `REACH` from the asset reach to it: so far off is a body or
-    hollow that is none. Early in a fit there are so many of these that all else is neglected.
+    points (n, 3), sdf (n,), field (n,), normalized frame: the distance from a sample on the wrong
+    side to the nearest one that the field puts on the side where the former belongs, sought no
+    further away than `limit`. With `floaters`, mistakes further than that from the asset count as
+    far as they are from it: so far off is a body or hollow that is none. Early in a fit there are
+    so many of these that all else is neglected.
     """
     found = np.zeros(len(points), dtype=np.float32)
     for inside in (False, True):
         kept = (field < 0) == inside
         missed = ~kept & ((sdf < 0) == inside)
-        found[missed] = _to_nearest(points[kept], points[missed])
-    far = (found > 0) & (np.abs(sdf) > REACH) & strays
+        found[missed] = _to_nearest(points[kept], points[missed], limit)
+    far = (found > 0) & (np.abs(sdf) > limit) & floaters
     found[far] = np.abs(sdf[far])
     return found
 
 
-def _to_nearest(known: Float32Array, points: Float32Array) -> Float32Array:
-    """Distances of points to the nearest known one, `REACH` if there is none so near."""
+def _to_nearest(known: Float32Array, points: Float32Array, limit: float) -> Float32Array:
+    """Distances (n,) of points to the nearest known one, `limit` if there is none so near."""
     if not len(known) or not len(points):
-        return np.full(len(points), REACH, dtype=np.float32)
+        return np.full(len(points), limit, dtype=np.float32)
     tree = cKDTree(known, balanced_tree=False, compact_nodes=False)  # asked once: quick to build
-    distance, _ = tree.query(points, distance_upper_bound=REACH)
-    return np.minimum(distance, REACH).astype(np.float32)
+    distance, _ = tree.query(points, distance_upper_bound=limit)
+    return np.minimum(distance, limit).astype(np.float32)

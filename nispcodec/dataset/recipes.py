@@ -1,103 +1,85 @@
-"""Which samples the networks learn from and are judged by, for each preset."""
+"""The samples that the networks learn from and are judged by, for each preset."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
-from nispcodec.dataset.sample_set import SampleSet
-from nispcodec.dataset.sampler import BETA, Sampler
-
-TIGHT = 1 / 300
-"""Mean distance (normalized frame) of the samples that sharpen the zero set."""
-
-WIDE = 1 / 12
-"""Mean distance of the samples for the insides of bodies, of which the cube's are few."""
-
-UNLIKE = 1 / 100
-"""As TIGHT, for what is on one side only of a nearly symmetric asset."""
-
-SKIN = 3e-3
-"""Mean distance of the samples for UVs: what is far from the surface is nobody's to ask."""
-
-CLOSE = 1.5e-3
-"""The same for charts: about as far as a decoded surface is off. Decisions beyond are wasted."""
-
-UNLIKE_TIMES = 8
-"""How often each of these is learned from: if once, a large part shows on the other side too."""
-
-THIN_TIMES = 16
-"""How many samples each point of THIN_COUNT that is on a thin part gets, beside its own four."""
-
-NEAR_COUNT = 80_000
-TIGHT_COUNT = 240_000
-CUBE_COUNT = 80_000
-WIDE_COUNT = 40_000
-UNLIKE_COUNT = 80_000
-THIN_COUNT = 60_000
-SKIN_COUNT = 250_000
-DETAIL_COUNT = 110_000
-CONFUSING_COUNT = 125_000
-MEMBRANE_COUNT = 12_000
-LEAST_COUNT = 150
-HELD_OUT_COUNT = 20_000
-PAPER_COUNT = 1_000_000
+from nispcodec.core.sample_set import SampleSet
+from nispcodec.dataset.sampler import Sampler
 
 
 @dataclass(frozen=True)
 class TrainingSets:
-    """Samples to fit the SDF (`distance`), charts and UVs (`textured`); held-out ones.
+    """All samples of one asset, normalized frame.
 
-    `scarce`: more for UVs, of patches that are too small to have many.
+    distance, charts, uvs    that the SDF, chart and UV network learn from
+    held_out_distance        near the surface, that the SDF is judged by
+    held_out_surface         on the surface, that charts and UVs are judged by
+    undersampled_charts      more for UVs, of patches that are too small to have many
     """
 
     distance: SampleSet
     charts: SampleSet
-    held_distance: SampleSet
-    held_skin: SampleSet
-    textured: SampleSet
-    scarce: SampleSet
+    uvs: SampleSet
+    held_out_distance: SampleSet
+    held_out_surface: SampleSet
+    undersampled_charts: SampleSet
 
-    def with_scarce(self) -> TrainingSets:
-        """UVs learn small patches too: for networks with room for them."""
-        return replace(self, textured=SampleSet.joined((self.textured, self.scarce)))
+    def with_undersampled_charts(self) -> TrainingSets:
+        """The sets from which UVs learn small patches too: for networks with room for them."""
+        return replace(self, uvs=SampleSet.joined((self.uvs, self.undersampled_charts)))
 
 
 def training_sets(sampler: Sampler) -> TrainingSets:
     """Near the surface for the most part; the whole cube for the sign far away.
 
-    UVs learn from some points again where the texture has detail, charts where they show different
+    UVs learn from some points again where the texture changes, charts where they show different
     colors.
     """
+    c = sampler.config
     distance = (
-        sampler.near(NEAR_COUNT, 1 / BETA),
-        sampler.near(TIGHT_COUNT, TIGHT),
-        sampler.cube(CUBE_COUNT),
-        sampler.near(WIDE_COUNT, WIDE),
-        *sampler.unlike(UNLIKE_COUNT, UNLIKE) * UNLIKE_TIMES,
+        sampler.near_surface(c.near_count, 1 / c.beta),
+        sampler.near_surface(c.tight_count, c.tight_spread),
+        sampler.cube(c.cube_count),
+        sampler.near_surface(c.wide_count, c.wide_spread),
+        *sampler.asymmetric(c.asymmetric_count, c.asymmetric_spread) * c.asymmetric_times,
     )
-    skin, close = (
+    uvs, charts = (
         SampleSet.joined(
-            (sampler.near(SKIN_COUNT, spread, signed=False), sampler.membrane(MEMBRANE_COUNT))
+            (
+                sampler.near_surface(c.near_surface_count, spread, signed=False),
+                sampler.closing_surface(c.closing_count),
+            )
         )
-        for spread in (SKIN, CLOSE)
+        for spread in (c.uv_spread, c.chart_spread)
     )
     return TrainingSets(
-        charts=SampleSet.joined((close, sampler.confusing(close, CONFUSING_COUNT))),
-        held_distance=sampler.near(HELD_OUT_COUNT, SKIN),
-        held_skin=sampler.surface(HELD_OUT_COUNT),
-        textured=SampleSet.joined((skin, sampler.detailed(skin, DETAIL_COUNT))),
-        scarce=sampler.scarce(LEAST_COUNT, SKIN_COUNT, SKIN),
-        distance=SampleSet.joined((*distance, sampler.thin(THIN_COUNT, THIN_TIMES, TIGHT))),
+        charts=SampleSet.joined((charts, sampler.by_chart_error(charts, c.chart_error_count))),
+        held_out_distance=sampler.near_surface(c.held_out_count, c.uv_spread),
+        held_out_surface=sampler.surface(c.held_out_count),
+        uvs=SampleSet.joined((uvs, sampler.by_texture_gradient(uvs, c.texture_count))),
+        undersampled_charts=sampler.undersampled_charts(
+            c.least_count, c.near_surface_count, c.uv_spread
+        ),
+        distance=SampleSet.joined(
+            (*distance, sampler.thin_walls(c.thin_count, c.thin_times, c.tight_spread))
+        ),
     )
 
 
 def paper_training_sets(sampler: Sampler) -> TrainingSets:
     """The paper's: importance samples for all networks, judged on the surface (section 4.1).
 
-    They leave most of space untold, where a fitted SDF then has as much surface again as the asset:
+    They leave most of space unseen, where a fitted SDF then has as much surface again as the asset:
     it sees the cube's samples as well.
     """
-    samples = sampler.importance(PAPER_COUNT)
-    distance = SampleSet.joined((samples, sampler.cube(CUBE_COUNT)))
-    held_out = sampler.near(HELD_OUT_COUNT, SKIN), sampler.surface(HELD_OUT_COUNT)
-    return TrainingSets(distance, samples, *held_out, samples, samples[:0])
+    c = sampler.config
+    samples = sampler.importance(c.paper_count)
+    return TrainingSets(
+        distance=SampleSet.joined((samples, sampler.cube(c.cube_count))),
+        charts=samples,
+        uvs=samples,
+        held_out_distance=sampler.near_surface(c.held_out_count, c.uv_spread),
+        held_out_surface=sampler.surface(c.held_out_count),
+        undersampled_charts=samples[:0],
+    )

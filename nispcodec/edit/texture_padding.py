@@ -1,6 +1,7 @@
-"""Textures whose gutters, what lies between the charts of the atlas, have no color of their own.
+"""Texture padding: what lies between the charts of the atlas takes the colors beside it.
 
-The seams and UVs of a decoded surface are a little off: along a seam it shows some of the gutter.
+The seams and UVs of a decoded surface are a little off: along a seam it shows some of what lies
+between the charts.
 """
 
 from __future__ import annotations
@@ -14,11 +15,11 @@ from nispcodec.core.asset import Texture, TexturedMesh
 from nispcodec.core.raster import coverage, padded
 from nispcodec.core.texture import encode_image, image_bytes
 
-EDGE = 1e-6
+ROUNDING = 1e-6
 """UVs that leave the image by so little do not."""
 
 
-def with_padded_gutters(mesh: TexturedMesh, quality: int) -> tuple[Texture, ...]:
+def with_padded_textures(mesh: TexturedMesh, quality: int) -> tuple[Texture, ...]:
     """The mesh's textures with the nearest used texel's color where no face lies.
 
     Formats and names stay; `quality`, 1 to 100, is for those that lose something. An image that no
@@ -29,7 +30,7 @@ def with_padded_gutters(mesh: TexturedMesh, quality: int) -> tuple[Texture, ...]
 
 def _padded(mesh: TexturedMesh, number: int, quality: int) -> Texture:
     texture, uvs = mesh.textures[number], _uvs(mesh, number)
-    if not len(uvs) or uvs.min() < -EDGE or uvs.max() > 1 + EDGE:
+    if not len(uvs) or uvs.min() < -ROUNDING or uvs.max() > 1 + ROUNDING:
         return texture
     pixels = image_bytes(texture)
     image = padded(pixels, coverage(uvs, *pixels.shape[:2]))
@@ -42,5 +43,5 @@ def _uvs(mesh: TexturedMesh, number: int) -> Float64Array:
     shown = np.array([bool(each) for each in uses], np.bool_)
     uvs = mesh.corner_uvs[shown[mesh.face_materials] & mesh.has_uv]
     if all(used.wrap == ("repeat", "repeat") for each in uses for used in each):
-        uvs = uvs - np.floor(uvs.min(axis=1, keepdims=True) + EDGE)
+        uvs = uvs - np.floor(uvs.min(axis=1, keepdims=True) + ROUNDING)
     return uvs

@@ -15,7 +15,7 @@ from nispcodec.core.progress import Listener, Progress
 from nispcodec.format import inspect, pack
 from nispcodec.format.constants import NETS, TXTR
 from nispcodec.infer.evaluate import evaluate
-from nispcodec.train.presets import Effort, Problem, probes, sine_tasks
+from nispcodec.train.config import TargetConfig, TrainingBudget
 from nispcodec.train.prune import Pruning
 from nispcodec.train.sizing import (
     Hidden,
@@ -28,27 +28,18 @@ from nispcodec.train.sizing import (
     smallest,
 )
 from nispcodec.train.task import Task
+from nispcodec.train.tasks import AssetProblem, probes, sine_tasks
 
 Networks = dict[str, Network]
 Fit = Callable[[list[Task], Listener], Networks]
 
-CLOSE = 0.1
-"""How far, relative to it, from an error that was asked for is near enough."""
-
-SLOPE, SLOPES = 0.7, (0.3, 1.5)
-"""The error falls with this power of the SDF's width, until two fits tell better."""
-
-ROUNDS = 5
-LEAST_ERROR = 2e-5
-"""Samples, float32 and the extracted mesh are good for no less (normalized frame)."""
-
 
 @dataclass(frozen=True)
-class Fitting:
-    """An asset's problem, how much effort it is worth, what is pruned, and what runs tasks."""
+class FitContext:
+    """An asset's problem, the budget for it, what is pruned, and what runs tasks."""
 
-    problem: Problem
-    effort: Effort
+    problem: AssetProblem
+    budget: TrainingBudget
     fit: Fit
     listen: Listener
     prunings: Mapping[str, Pruning] = field(default_factory=dict)
@@ -64,11 +55,15 @@ class Fitting:
         self.fit(probes(self.problem), heard)
         return errors
 
+    def hidden_layers(self, errors: Mapping[str, float], scale: float) -> Hidden:
+        """As large as the probes' held-out errors ask for, `scale` times as wide."""
+        return hidden_layers(errors, self.problem.area, scale, self.problem.config.sizing)
+
     def tasks(
-        self, hidden: Hidden, errors: Mapping[str, float], budgets: Mapping[str, float]
+        self, hidden: Hidden, errors: Mapping[str, float], bit_budgets: Mapping[str, float]
     ) -> list[Task]:
         """The tasks for networks with these hidden layers."""
-        tasks = sine_tasks(self.problem, hidden, self.effort, errors, budgets)
+        tasks = sine_tasks(self.problem, hidden, self.budget, errors, bit_budgets)
         return pruned(tasks, self.prunings)
 
 
@@ -77,69 +72,71 @@ def pruned(tasks: list[Task], prunings: Mapping[str, Pruning]) -> list[Task]:
     return [replace(task, pruning=prunings.get(task.name)) for task in tasks]
 
 
-def fit_with_preset(fitting: Fitting) -> Networks:
+def fit_with_preset(context: FitContext) -> Networks:
     """Networks as large as the preset and the asset suggest."""
-    errors = fitting.probe()
-    hidden = hidden_layers(errors, fitting.problem.area, fitting.effort.scale)
-    return fitting.fit(fitting.tasks(hidden, errors, {}), fitting.listen)
+    errors = context.probe()
+    hidden = context.hidden_layers(errors, context.budget.scale)
+    return context.fit(context.tasks(hidden, errors, {}), context.listen)
 
 
 def fit_to_size(
-    fitting: Fitting, wanted: float, document: Callable[[Networks], Document]
+    context: FitContext, wanted: float, document: Callable[[Networks], Document]
 ) -> Networks:
     """Networks for a file of `wanted` bytes, textures apart; `document` is the file's content.
 
     Raises NispError, before anything is trained, when that is too few for the asset.
     """
-    problem = fitting.problem
-    tiny = problem.specs(smallest(problem.networks))
+    problem = context.problem
+    sizing = problem.config.sizing
+    tiny = problem.specs(smallest(problem.networks, sizing))
     besides = _bytes_besides(document({name: _blank(spec) for name, spec in tiny.items()}))
-    least = besides + bytes_of(tiny)
+    least = besides + bytes_of(tiny, sizing)
     if wanted < least:
         raise NispError(
             f"target size: expected at least {least:,.0f} bytes for this asset (its tables and the "
             f"smallest networks), found {wanted:,.0f}"
         )
-    errors = fitting.probe()
+    errors = context.probe()
     scale = scale_for_bytes(
-        lambda scale: bytes_of(problem.specs(hidden_layers(errors, problem.area, scale))),
+        lambda scale: bytes_of(problem.specs(context.hidden_layers(errors, scale)), sizing),
         wanted - besides,
     )
-    hidden = hidden_layers(errors, problem.area, scale)
+    hidden = context.hidden_layers(errors, scale)
     specs = problem.specs(hidden)
-    share = (wanted - besides) / bytes_of(specs)
-    budgets = {name: share * bits for name, bits in bits_of(specs).items()}
-    return fitting.fit(fitting.tasks(hidden, errors, budgets), fitting.listen)
+    share = (wanted - besides) / bytes_of(specs, sizing)
+    budgets = {name: share * bits for name, bits in bits_of(specs, sizing).items()}
+    return context.fit(context.tasks(hidden, errors, budgets), context.listen)
 
 
-def fit_to_error(fitting: Fitting, wanted: float) -> Networks:
-    """Networks whose SDF has a mean held-out error of `wanted`, within `CLOSE`.
+def fit_to_error(context: FitContext, wanted: float) -> Networks:
+    """Networks whose SDF has a mean held-out error of `wanted`, within `TargetConfig.close`.
 
-    Raises NispError for less than `LEAST_ERROR`, FitError when no width comes close enough; an
-    asset whose smallest network is already better is not made worse.
+    Raises NispError for less than `TargetConfig.least_error`, FitError when no width comes close
+    enough; an asset whose smallest network is already better is not made worse.
     """
-    if wanted < LEAST_ERROR:
-        raise NispError(f"target error: expected at least {LEAST_ERROR:g}, found {wanted:g}")
-    errors = fitting.probe()
-    hidden = dict(hidden_layers(errors, fitting.problem.area, fitting.effort.scale))
+    config = context.problem.config.target
+    if wanted < config.least_error:
+        raise NispError(f"target error: expected at least {config.least_error:g}, found {wanted:g}")
+    errors = context.probe()
+    hidden = dict(context.hidden_layers(errors, context.budget.scale))
     networks: Networks = {}
     tried: dict[int, float] = {}
-    for _ in range(ROUNDS):
-        tasks = [task for task in fitting.tasks(hidden, errors, {}) if task.name not in networks]
-        networks |= fitting.fit(tasks, fitting.listen)
+    for _ in range(config.rounds):
+        tasks = [task for task in context.tasks(hidden, errors, {}) if task.name not in networks]
+        networks |= context.fit(tasks, context.listen)
         used = hidden["sdf"][0]
-        tried[used] = error = _distance_error(fitting.problem, networks["sdf"])
+        tried[used] = error = _distance_error(context.problem, networks["sdf"])
         note = f"sdf of width {used}: mean distance {error:.3g}, asked {wanted:.3g}"
-        fitting.listen(Progress(network="sdf", stage="fit", note=note))
-        width = _next_width(tried, wanted)
-        if abs(error / wanted - 1) <= CLOSE or width in tried:
+        context.listen(Progress(network="sdf", stage="fit", note=note))
+        width = _next_width(tried, wanted, config)
+        if abs(error / wanted - 1) <= config.close or width in tried:
             break
         del networks["sdf"]
-        hidden["sdf"] = layers(width, len(hidden["sdf"]))
-    if error > (1 + CLOSE) * wanted:
+        hidden["sdf"] = layers(width, len(hidden["sdf"]), context.problem.config.sizing)
+    if error > (1 + config.close) * wanted:
         raise FitError(
-            f"target error: expected {wanted:g} within {CLOSE:.0%}, found {error:.3g} with an SDF "
-            f"of width {used}; a preset that takes longer may do better"
+            f"target error: expected {wanted:g} within {config.close:.0%}, found {error:.3g} with "
+            f"an SDF of width {used}; a preset that takes longer may do better"
         )
     return networks
 
@@ -156,16 +153,17 @@ def _bytes_besides(document: Document) -> int:
     )
 
 
-def _next_width(tried: Mapping[int, float], wanted: float) -> int:
+def _next_width(tried: Mapping[int, float], wanted: float, config: TargetConfig) -> int:
     """Where a power law through the two best fits, or the usual one, meets the wanted error."""
     order = sorted(tried, key=lambda width: abs(math.log(tried[width] / wanted)))
-    slope, best = SLOPE, order[0]
+    slope, best = config.slope, order[0]
     if len(order) > 1:
         measured = math.log(tried[order[1]] / tried[best]) / math.log(best / order[1])
-        slope = min(max(measured, SLOPES[0]), SLOPES[1])
+        low, high = config.slopes
+        slope = min(max(measured, low), high)
     return even_width(best * (tried[best] / wanted) ** (1 / slope))
 
 
-def _distance_error(problem: Problem, network: Network) -> float:
-    held_out = problem.sets.held_distance
+def _distance_error(problem: AssetProblem, network: Network) -> float:
+    held_out = problem.sets.held_out_distance
     return float(np.abs(evaluate(network, held_out.points)[:, 0] - held_out.sdf).mean())

@@ -14,7 +14,8 @@ from scipy.sparse.csgraph import connected_components, dijkstra
 
 from nispcodec.core.arrays import Float64Array, Int64Array, IntArray
 from nispcodec.core.asset import TexturedMesh
-from nispcodec.geometry.charts import Charts, colored, connected_faces, row_ids, uv_ids
+from nispcodec.core.connectivity import connected_faces, row_ids
+from nispcodec.geometry.charts import Charts, colored, uv_ids
 
 
 def split_self_seams(mesh: TexturedMesh, charts: Charts) -> Charts:
@@ -61,8 +62,8 @@ def _seams(mesh: TexturedMesh, corners: Int64Array) -> _Seams:
     chart = _chart_of_corner(corners, ends)
     order = np.lexsort((places[:, 1], places[:, 0], chart))
     keys = np.column_stack([chart, places])[order]
-    twins = (keys[1:] == keys[:-1]).all(axis=1)
-    one, other = ends[order[:-1][twins]], ends[order[1:][twins]]
+    paired = (keys[1:] == keys[:-1]).all(axis=1)
+    one, other = ends[order[:-1][paired]], ends[order[1:][paired]]
     jumps = (one != other).any(axis=1)
     return _Seams(one[jumps], other[jumps])
 

@@ -1,6 +1,6 @@
-"""Which charts share a number: mirror images, and charts far apart whose UVs go together.
+"""Charts that share a label: mirror images, and charts far apart whose UVs go together.
 
-A position tells such charts apart already, so the networks need a number only to keep neighbors
+A position tells such charts apart already, so the networks need a label only to keep neighbors
 apart: some hundred charts become a few dozen labels. Some more make UVs easier to learn.
 """
 
@@ -18,24 +18,10 @@ from scipy.spatial import cKDTree
 
 from nispcodec.core.arrays import Float64Array, Int32Array, IntArray
 from nispcodec.geometry.charts import Charts, colored
+from nispcodec.geometry.config import MergingConfig
 
 Kind = tuple[int, bool]
 """Material of a chart, and whether it has UVs."""
-
-RIDGE = 1e-4
-"""Keeps the direction across a flat chart, of which nothing is known, from deciding anything."""
-
-FLOOR = 1e-3
-"""UVs nearer than this to an affine map are as good as on it."""
-
-SHARES = 0.0, 0.125, 0.25, 0.5, 0.75, 1.0
-"""How many more labels than are needed are tried."""
-WORTH = 3.0
-"""Bits a point that twice the labels have to save."""
-
-SWEEPS = 10
-MANY = 2000
-"""From so many charts on only the labels that are needed are tried, without another look."""
 
 
 @dataclass(frozen=True)
@@ -54,26 +40,28 @@ class Cover:
     uvs: Float64Array
 
 
-def merge_charts(charts: Charts, cover: Cover, twins: IntArray, gap: float) -> Charts:
-    """Give one number to charts of one material: twins, and those further apart than `gap`.
+def merge_charts(
+    charts: Charts, cover: Cover, mirrored: IntArray, config: MergingConfig = MergingConfig()
+) -> Charts:
+    """Give one label to charts of one material: mirror images, and those further apart than a gap.
 
-    twins (t, 2): pairs of charts whose UVs are the same function of `coordinates`, near or far.
-    Of all charts that could share a number those do whose UVs are most nearly one affine map of the
-    coordinates: the least is left to learn for the UV network. There are more numbers than needed
+    mirrored (t, 2): pairs of charts whose UVs are the same function of `coordinates`, near or far.
+    Of all charts that could share a label those do whose UVs are most nearly one affine map of the
+    coordinates: the least is left to learn for the UV network. There are more labels than needed
     where that saves enough.
     """
-    alike = (charts.materials[twins] == charts.materials[twins[:, :1]]).all(axis=1)
-    group = _groups(len(charts), twins[alike])
+    alike = (charts.materials[mirrored] == charts.materials[mirrored[:, :1]]).all(axis=1)
+    group = _groups(len(charts), mirrored[alike])
     count = int(group.max()) + 1
     first = np.unique(group, return_index=True)[1]
     kinds = [(int(charts.materials[i]), bool(charts.has_uv[i])) for i in first]
     numbers = group[cover.charts]
-    neighbors = _neighbors(count, cover.points, numbers, gap)
+    neighbors = _neighbors(count, cover.points, numbers, config.gap)
     _, needed = colored(neighbors, kinds)
     moments = _moments(count, cover, numbers)
-    shares = SHARES if count < MANY else SHARES[:1]
-    tried = [_Fits(moments, neighbors, kinds, _more(needed, share)) for share in shares]
-    costs = [fits.mean_bits + WORTH * share for fits, share in zip(tried, shares, strict=True)]
+    shares = config.extra_shares if count < config.many else config.extra_shares[:1]
+    tried = [_Fits(moments, neighbors, kinds, _more(needed, share), config) for share in shares]
+    costs = [f.mean_bits + config.worth * share for f, share in zip(tried, shares, strict=True)]
     best = tried[int(np.argmin(costs))]
     used, numbered = np.unique(best.labels, return_inverse=True)
     return Charts(
@@ -109,13 +97,15 @@ class _Fits:
         neighbors: list[set[int]],
         kinds: list[Kind],
         palette: Sequence[Kind],
+        config: MergingConfig,
     ) -> None:
+        self.config = config
         self.moments, self.neighbors, self.kinds = moments, neighbors, kinds
         most = len(palette) + len(moments)
         self.mixed = np.zeros((most, *moments.shape[1:]))
         self.bits = np.zeros(most)
         self.labels, self.palette = colored(neighbors, kinds, palette, self._choose)
-        sweeps = SWEEPS if len(moments) < MANY else 0
+        sweeps = config.sweeps if len(moments) < config.many else 0
         while sweeps and self._sweep():
             sweeps -= 1
 
@@ -127,7 +117,7 @@ class _Fits:
     def _choose(self, chart: int, labels: Sequence[int]) -> int:
         """The label that it costs the least to add this chart to, which is done."""
         together = self.mixed[labels] + self.moments[chart]
-        bits = _bits(together)
+        bits = _bits(together, self.config)
         best = int(np.argmin(bits - self.bits[labels]))
         label = labels[best]
         self.mixed[label], self.bits[label] = together[best], bits[best]
@@ -138,7 +128,7 @@ class _Fits:
         before = list(self.labels)
         for chart, label in enumerate(before):
             self.mixed[label] -= self.moments[chart]
-            self.bits[label] = _bits(self.mixed[label][None])[0]
+            self.bits[label] = _bits(self.mixed[label][None], self.config)[0]
             taken = {self.labels[other] for other in self.neighbors[chart]}
             kind = self.kinds[chart]
             free = [n for n, k in enumerate(self.palette) if k == kind and n not in taken]
@@ -146,14 +136,14 @@ class _Fits:
         return self.labels != before
 
 
-def _bits(moments: Float64Array) -> Float64Array:
+def _bits(moments: Float64Array, config: MergingConfig) -> Float64Array:
     """(n,) logarithms of how far UVs are from the affine maps of least squares, for every point."""
     points, size = moments[:, -3, -3], moments.shape[1]
-    known = moments[:, :-2, :-2] + RIDGE * np.eye(size - 2)
+    known = moments[:, :-2, :-2] + config.ridge * np.eye(size - 2)
     cross = moments[:, :-2, -2:]
     explained = np.einsum("nij,nij->n", cross, np.linalg.solve(known, cross))
     left = np.trace(moments[:, -2:, -2:], axis1=1, axis2=2) - explained
-    apart = np.maximum(left, 0) / np.maximum(points, 1) + FLOOR**2
+    apart = np.maximum(left, 0) / np.maximum(points, 1) + config.floor**2
     bits: Float64Array = 0.5 * points * np.log2(apart)
     return bits
 

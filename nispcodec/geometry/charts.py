@@ -7,11 +7,10 @@ from dataclasses import dataclass
 from typing import TypeVar
 
 import numpy as np
-from scipy.sparse import coo_matrix
-from scipy.sparse.csgraph import connected_components
 
-from nispcodec.core.arrays import AnyArray, BoolArray, Int32Array, Int64Array, IntArray
+from nispcodec.core.arrays import BoolArray, Int32Array, Int64Array
 from nispcodec.core.asset import TexturedMesh
+from nispcodec.core.connectivity import connected_faces, row_ids
 
 Kind = TypeVar("Kind")
 
@@ -68,38 +67,8 @@ def colored(
     return color, kind_of_color
 
 
-def row_ids(rows: AnyArray) -> Int64Array:
-    """(n, c) -> (n,): equal rows get equal numbers."""
-    if not len(rows):
-        return np.zeros(0, dtype=np.int64)
-    # Several times as fast as np.unique over an axis.
-    order = np.lexsort(rows.T[::-1])
-    is_new = (rows[order[1:]] != rows[order[:-1]]).any(axis=1)
-    ids = np.zeros(len(rows), dtype=np.int64)
-    ids[order[1:]] = np.cumsum(is_new)
-    return ids
-
-
 def uv_ids(mesh: TexturedMesh) -> Int64Array:
     """(m, 3): equal UVs get equal numbers; -1 on faces without UV."""
     if not len(mesh.uvs):
         return np.full(mesh.faces.shape, -1, dtype=np.int64)
     return np.where(mesh.has_uv[:, None], row_ids(mesh.uvs)[mesh.uv_faces], -1)
-
-
-def connected_faces(corners: Int64Array) -> Int32Array:
-    faces = len(corners)
-    rows = np.repeat(np.arange(faces), 3)
-    columns = faces + corners.reshape(-1)
-    size = faces + int(corners.max()) + 1
-    graph = coo_matrix((np.ones(3 * faces, dtype=bool), (rows, columns)), shape=(size, size))
-    labels = connected_components(graph, directed=False)[1][:faces]
-    return _numbered_by_first(labels)
-
-
-def _numbered_by_first(labels: IntArray) -> Int32Array:
-    _, first, inverse = np.unique(labels, return_index=True, return_inverse=True)
-    rank = np.empty(len(first), dtype=np.int32)
-    rank[np.argsort(first)] = np.arange(len(first), dtype=np.int32)
-    numbered: Int32Array = rank[inverse.reshape(-1)]
-    return numbered

@@ -8,12 +8,9 @@ import igl
 import numpy as np
 
 from nispcodec.core.arrays import BoolArray, Float64Array, Int64Array
-from nispcodec.geometry.solid import SHELL, Solid, normals
+from nispcodec.geometry.config import SolidConfig
+from nispcodec.geometry.solid import Solid, normals
 from nispcodec.geometry.z_order import z_order
-
-LIFT = 1e-6
-"""How far in front of a sheet (normalized frame) its points are looked for: of two faces back to
-back the one on the same side is the closest."""
 
 
 @dataclass(frozen=True)
@@ -26,17 +23,17 @@ class Closest:
 
 
 class DistanceField:
-    """The union of the bodies and of the sheets thickened by `SHELL`, as a signed distance.
+    """The union of the bodies and of the open surfaces, thickened, as a signed distance.
 
     libigl's own signed distance scales magnitudes by the winding number, so magnitude and sign are
     computed apart: exact point-triangle distance, and inside where |winding number| > 1/2.
     """
 
-    def __init__(self, solid: Solid) -> None:
+    def __init__(self, solid: Solid, sheet_lift: float = SolidConfig.sheet_lift) -> None:
         self.solid = solid
         self._walls = _Tree(solid.pieces, solid.wall)
-        lifted = solid.pieces + LIFT * normals(solid.pieces)[:, None]
-        self._sheets = _Tree(lifted, solid.sheet)
+        lifted = solid.pieces + sheet_lift * normals(solid.pieces)[:, None]
+        self._sheets = _Tree(lifted, solid.open_surface)
 
     def closest(self, points: Float64Array, signed: bool = True) -> Closest:
         """Signed distance (negative inside) and closest surface point of (n, 3) points.
@@ -47,7 +44,7 @@ class DistanceField:
         walls, sheets = self._walls.closest(points), self._sheets.closest(points)
         inside = self.inside(points) if signed else np.zeros(len(points), dtype=bool)
         distance = np.where(inside, -walls.sdf, walls.sdf)
-        thick = sheets.sdf - SHELL
+        thick = sheets.sdf - self.solid.half_thickness
         nearer = thick < distance
         return Closest(
             sdf=np.where(nearer, thick, distance),
@@ -56,7 +53,7 @@ class DistanceField:
         )
 
     def inside(self, points: Float64Array) -> BoolArray:
-        """Which of (n, 3) points lie inside the bodies, sheets left out."""
+        """Which of (n, 3) points lie inside the bodies, open surfaces left out."""
         return np.abs(self.solid.winding.at(points)) > 0.5
 
 

@@ -1,9 +1,9 @@
-"""What of a mesh a signed distance can hold: outer faces, hidden faces dropped, sheets thickened.
+"""The part of a mesh that a signed distance can hold: hidden faces dropped, sheets thickened.
 
 Real assets are many bodies pushed into each other, with holes where nobody looks. The winding
 number says what is inside; the part of the mesh that lies inside other bodies is hidden and cannot
-be the zero set of any SDF; open sheets (cards, cloth, leaves) have no inside and get a thickness,
-as do walls too thin for one (cards of two faces back to back).
+be the zero set of any SDF; open surfaces (cards, cloth, leaves) have no inside and get a thickness,
+as do walls too thin for one (double-sided sheets: two faces back to back).
 """
 
 from __future__ import annotations
@@ -14,82 +14,60 @@ import igl
 import numpy as np
 
 from nispcodec.core.arrays import BoolArray, Float64Array, Int64Array, IntArray
+from nispcodec.core.connectivity import connected_faces, row_ids
 from nispcodec.core.errors import MeshError
-from nispcodec.geometry.charts import connected_faces, row_ids
+from nispcodec.geometry.config import SolidConfig
 from nispcodec.geometry.z_order import z_order
 
-OFFSET = 2e-3
-"""How far off a face (normalized frame) one looks to tell which of its sides are inside."""
-
-SHELL = 4e-3
-"""Half the thickness (normalized frame) given to sheets."""
-
-THIN = 1e-3
-"""Walls thinner than this (normalized frame) are sheets: nothing inside them would be learned."""
-
-COARSE_EDGE = 0.1
-FINE_EDGE = 0.03
-DOUBT = 0.05
-
-# Half the time of libigl's default of 2; of 200,000 probes around a helmet of 82 bodies, one moved
-# across 1/2.
-ACCURACY = 1.5
-
-OPENNESS = 0.25
-UNDECIDED = 0.2
-GAP = 0.02
-
-CARD = 0.7
-"""A body whose openings have at least this share of its own area is a card."""
-
-CLOSING = 0.25
-"""A card that closes something has a winding number within this of a whole one, in the mean."""
-
-TINY = 1e-30
+TINY = np.finfo(np.float64).tiny
 
 
 @dataclass(frozen=True)
 class Solid:
     """A mesh in the normalized frame, sorted by what an SDF can hold.
 
-    pieces  (p, 3, 3) float64: the outer faces and sheets, large ones subdivided
-    parents (p,) int: the mesh face that each piece is part of
-    sheet   (p,) bool: pieces that get a thickness
-    wall    (p,) bool: pieces with an inside; a sheet that is one too has two faces back to back
-    winding of the closed or nearly closed bodies: where it is beyond 1/2 is inside
+    pieces         (p, 3, 3) float64: the outer faces and open surfaces, large ones subdivided
+    parents        (p,) int: the mesh face that each piece is part of
+    open_surface   (p,) bool: pieces that get a thickness
+    wall           (p,) bool: pieces with an inside; an open surface that is one too is one side of
+                   a double-sided sheet
+    winding        of the closed or nearly closed bodies: where it is beyond 1/2 is inside
+    half_thickness of open surfaces, normalized frame
     hidden_share, open_surface_share: of the mesh's area
     """
 
     pieces: Float64Array
     parents: Int64Array
-    sheet: BoolArray
+    open_surface: BoolArray
     wall: BoolArray
     winding: Winding
+    half_thickness: float
     hidden_share: float
     open_surface_share: float
 
 
-def build_solid(corners: Float64Array) -> Solid:
+def build_solid(corners: Float64Array, config: SolidConfig = SolidConfig()) -> Solid:
     """Sort the faces (m, 3, 3), normalized frame. Raises MeshError when none can be seen."""
-    free = _free_bodies(corners)
+    free = _free_bodies(corners, config)
     bodies = corners[~free]
-    winding = Winding(bodies)
-    pieces, parents, kind = _classify(winding, bodies, np.flatnonzero(~free))
+    winding = Winding(bodies, config.winding_accuracy)
+    pieces, parents, kind = _classify(winding, bodies, np.flatnonzero(~free), config)
     hidden = kind == _HIDDEN
     total = area(corners).sum()
     all_pieces = np.concatenate([pieces[~hidden], corners[free]])
     if not len(all_pieces):
         raise MeshError(f"expected faces to be seen from outside, found {len(corners)} hidden ones")
-    kinds = np.concatenate([kind[~hidden], np.full(free.sum(), _SHEET)])
-    sheet = kinds != _OUTER
+    kinds = np.concatenate([kind[~hidden], np.full(free.sum(), _OPEN)])
+    open_surface = kinds != _OUTER
     return Solid(
         pieces=all_pieces,
         parents=np.concatenate([parents[~hidden], np.flatnonzero(free)]),
-        sheet=sheet,
-        wall=kinds != _SHEET,
+        open_surface=open_surface,
+        wall=kinds != _OPEN,
         winding=winding,
+        half_thickness=config.half_thickness,
         hidden_share=float(area(pieces[hidden]).sum() / total),
-        open_surface_share=float(area(all_pieces[sheet]).sum() / total),
+        open_surface_share=float(area(all_pieces[open_surface]).sum() / total),
     )
 
 
@@ -107,9 +85,10 @@ def normals(triangles: Float64Array) -> Float64Array:
 
 
 class Winding:
-    """Generalized winding number of a triangle soup (m, 3, 3)."""
+    """Generalized winding number of a triangle soup (m, 3, 3); `accuracy` is libigl's."""
 
-    def __init__(self, bodies: Float64Array) -> None:
+    def __init__(self, bodies: Float64Array, accuracy: float) -> None:
+        self._accuracy = accuracy
         self._tree = igl.FastWindingNumberBVH()
         self._empty = not len(bodies)
         if not self._empty:
@@ -122,105 +101,113 @@ class Winding:
             return np.zeros(len(points))
         order = z_order(points)
         number = np.empty(len(points))
-        number[order] = self._tree.winding_number(points[order], ACCURACY)
+        number[order] = self._tree.winding_number(points[order], self._accuracy)
         return number
 
 
-_OUTER, _HIDDEN, _SHEET, _THIN, _MIXED = range(5)
+_OUTER, _HIDDEN, _OPEN, _THIN, _MIXED = range(5)
 
 
 def _classify(
-    winding: Winding, bodies: Float64Array, parents: Int64Array
+    winding: Winding, bodies: Float64Array, parents: Int64Array, config: SolidConfig
 ) -> tuple[Float64Array, Int64Array, Int64Array]:
     """Subdivide the faces until each piece is of one kind: pieces, their parents, their kinds."""
     done: list[tuple[Float64Array, Int64Array, Int64Array]] = []
     todo, todo_parents = bodies, parents
     while len(todo):
         longest = _longest_edge(todo)
-        kind = _kind(winding, todo, single=longest <= FINE_EDGE)
-        split = (longest > COARSE_EDGE) | (kind == _MIXED)
+        fine = longest <= config.fine_edge
+        kind = _kind(winding, todo, fine, config)
+        split = (longest > config.coarse_edge) | (kind == _MIXED)
         kind = np.where(kind == _MIXED, _OUTER, kind)
-        keep = ~split | (longest <= FINE_EDGE)
+        keep = ~split | fine
         done.append((todo[keep], todo_parents[keep], kind[keep]))
         todo, todo_parents = _subdivide(todo[~keep]), np.repeat(todo_parents[~keep], 4)
     pieces, owners, kinds = zip(*done, strict=True) if done else ((bodies,), (parents,), (parents,))
     everything, kind = np.concatenate(pieces), np.concatenate(kinds)
-    kind[_thin(winding, everything) & (kind == _OUTER)] = _THIN
+    kind[_thin(winding, everything, config.thin_wall) & (kind == _OUTER)] = _THIN
     return everything, np.concatenate(owners), kind
 
 
-def _thin(winding: Winding, pieces: Float64Array) -> BoolArray:
-    """Which pieces (p,) have the outside in front and, a thin wall away, behind them as well."""
-    center, step = pieces.mean(axis=1), THIN * normals(pieces)
+def _thin(winding: Winding, pieces: Float64Array, depth: float) -> BoolArray:
+    """Which pieces (p,) have the outside in front and, `depth` away, behind them as well."""
+    center, step = pieces.mean(axis=1), depth * normals(pieces)
     thin: BoolArray = np.abs(winding.at(center - step)) <= 0.5
     thin[thin] = np.abs(winding.at((center + step)[thin])) <= 0.5
     return thin
 
 
-def _kind(winding: Winding, pieces: Float64Array, single: BoolArray) -> Int64Array:
+def _kind(
+    winding: Winding, pieces: Float64Array, single: BoolArray, config: SolidConfig
+) -> Int64Array:
     """Kind of each piece from its centroid, and for all but the small ones from its corners too."""
-    kind = _point_kind(winding, pieces, np.full(3, 1 / 3))
+    kind = _point_kind(winding, pieces, np.full(3, 1 / 3), config)
     large = np.flatnonzero(~single)
     for corner in range(3):
         weights = np.full(3, 0.05)
         weights[corner] = 0.9
-        other = _point_kind(winding, pieces[large], weights)
+        other = _point_kind(winding, pieces[large], weights, config)
         kind[large] = np.where(other == kind[large], other, _MIXED)
     return kind
 
 
-def _point_kind(winding: Winding, pieces: Float64Array, weights: Float64Array) -> Int64Array:
+def _point_kind(
+    winding: Winding, pieces: Float64Array, weights: Float64Array, config: SolidConfig
+) -> Int64Array:
     """Across a face the winding number falls by one, so one look in front is enough.
 
-    Not quite by one across a card, whose rim shows: hence the doubtful band.
+    Not quite by one across an open surface, whose rim shows: hence the doubtful band.
     """
-    points = np.einsum("c,ncx->nx", weights, pieces) + OFFSET * normals(pieces)
+    points = np.einsum("c,ncx->nx", weights, pieces) + config.probe_offset * normals(pieces)
     front = winding.at(points)
-    doubtful = np.abs(front + 0.5) < DOUBT
+    doubtful = np.abs(front + 0.5) < config.doubt
     inside = (np.abs(front) > 0.5) & (np.abs(front + 1) > 0.5)
-    return np.select([doubtful, inside], [_SHEET, _HIDDEN], _OUTER)
+    return np.select([doubtful, inside], [_OPEN, _HIDDEN], _OUTER)
 
 
-def _free_bodies(corners: Float64Array) -> BoolArray:
-    """Faces (m,) of bodies that enclose nothing: sheets, whatever the winding number says."""
+def _free_bodies(corners: Float64Array, config: SolidConfig) -> BoolArray:
+    """Faces (m,) of bodies that enclose nothing, whatever the winding number says."""
     vertices = row_ids(corners.reshape(-1, 3)).reshape(-1, 3)
     body = connected_faces(vertices)
     size = np.maximum(np.bincount(body, weights=area(corners)), TINY)
     opening, center, owner = _openings(corners, vertices, body)
-    exposed = _exposed(corners, center)
+    exposed = _exposed(corners, center, config)
     open_area = np.bincount(owner[exposed], weights=opening[exposed], minlength=len(size))
-    is_open = open_area / size > OPENNESS
-    is_card = np.bincount(owner, weights=opening, minlength=len(size)) / size > CARD
-    mask: BoolArray = _with_cards(corners, body, is_card, is_open)[body]
+    is_open = open_area / size > config.open_share
+    all_open = np.bincount(owner, weights=opening, minlength=len(size))
+    is_sheet = all_open / size > config.card_share
+    mask: BoolArray = _with_sheets(corners, body, is_sheet, is_open, config)[body]
     return mask
 
 
-def _exposed(corners: Float64Array, center: Float64Array) -> BoolArray:
+def _exposed(corners: Float64Array, center: Float64Array, config: SolidConfig) -> BoolArray:
     """Which openings, by their centers (n, 3), are large and not plugged by another body.
 
-    Closing one, as the winding number does where it passes 1/2, would draw a membrane that nobody
-    modeled. Openings within `GAP` of the mesh (flat cards, panels) need no such care.
+    Closing one, as the winding number does where it passes 1/2, would draw a closing surface that
+    nobody modeled. Openings beside the mesh (flat cards, panels) need no such care.
     """
-    undecided = np.abs(np.abs(Winding(corners).at(center)) - 0.5) < UNDECIDED
-    exposed: BoolArray = undecided & (_gap(corners, center) > GAP)
+    number = Winding(corners, config.winding_accuracy).at(center)
+    undecided = np.abs(np.abs(number) - 0.5) < config.undecided
+    exposed: BoolArray = undecided & (_gap(corners, center) > config.plugged_gap)
     return exposed
 
 
-def _with_cards(
-    corners: Float64Array, body: IntArray, card: BoolArray, free: BoolArray
+def _with_sheets(
+    corners: Float64Array, body: IntArray, sheet: BoolArray, free: BoolArray, config: SolidConfig
 ) -> BoolArray:
-    """The `free` bodies (b,) and the cards among the others that close nothing.
+    """The `free` bodies (b,) and the sheets among the others that close nothing.
 
-    The winding number beside a card is a half and whatever its neighbors add: where there are many
-    (leaves), any number. Beside one that closes a body it is a whole one. Cards let go show others.
+    The winding number beside a sheet is a half and whatever its neighbors add: where there are many
+    (leaves), any number. Beside one that closes a body it is a whole one. Those let go show others.
     """
-    while (card & ~free).any():
-        faces = np.flatnonzero((card & ~free)[body])
+    while (sheet & ~free).any():
+        faces = np.flatnonzero((sheet & ~free)[body])
         sizes, shown = area(corners[faces]), corners[faces]
-        front = Winding(corners[~free[body]]).at(shown.mean(axis=1) + OFFSET * normals(shown))
+        in_front = shown.mean(axis=1) + config.probe_offset * normals(shown)
+        front = Winding(corners[~free[body]], config.winding_accuracy).at(in_front)
         total = np.bincount(body[faces], sizes, len(free))
         mean = np.bincount(body[faces], front * sizes, len(free)) / np.maximum(total, TINY)
-        loose = np.abs(mean + 0.5) < 0.5 - CLOSING
+        loose = np.abs(mean + 0.5) < 0.5 - config.closing
         if not loose.any():
             break
         free = free | loose

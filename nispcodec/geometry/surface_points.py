@@ -1,11 +1,13 @@
-"""Random points on triangles and in the ball, and where in its triangle a point lies."""
+"""Random points on and beside the surface, and where in its triangle a point lies."""
 
 from __future__ import annotations
 
 import numpy as np
 
 from nispcodec.core.arrays import Float64Array, Int64Array
-from nispcodec.geometry.solid import area
+from nispcodec.geometry.solid import Solid, area, normals
+
+TINY = np.finfo(np.float64).tiny
 
 
 def barycentric(triangles: Float64Array, points: Float64Array) -> Float64Array:
@@ -15,7 +17,7 @@ def barycentric(triangles: Float64Array, points: Float64Array) -> Float64Array:
     bb, bc, cc, pb, pc = (
         (p * q).sum(axis=1) for p, q in ((ab, ab), (ab, ac), (ac, ac), (ap, ab), (ap, ac))
     )
-    determinant = np.maximum(bb * cc - bc * bc, 1e-300)
+    determinant = np.maximum(bb * cc - bc * bc, TINY)
     v, w = (cc * pb - bc * pc) / determinant, (bb * pc - bc * pb) / determinant
     weights = np.clip(np.stack([1 - v - w, v, w], axis=1), 0.0, 1.0)
     return weights / weights.sum(axis=1, keepdims=True)
@@ -31,7 +33,7 @@ def random_barycentric(random: np.random.Generator, count: int) -> Float64Array:
 def uniform_surface(
     random: np.random.Generator, pieces: Float64Array, count: int
 ) -> tuple[Float64Array, Int64Array]:
-    """Points (count, 3) uniform by area on pieces (p, 3, 3), and the pieces they lie on."""
+    """Points (count, 3) uniform by area on pieces (p, 3, 3), and the piece (count,) of each."""
     return points_on(random, pieces, area(pieces), count)
 
 
@@ -42,6 +44,43 @@ def points_on(
     piece = random.choice(len(pieces), size=count, p=weight / weight.sum())
     weights = random_barycentric(random, count)
     return np.einsum("nc,ncx->nx", weights, pieces[piece]), piece
+
+
+def solid_surface(
+    random: np.random.Generator, solid: Solid, count: int
+) -> tuple[Float64Array, Int64Array]:
+    """As `uniform_surface`, those on open surfaces moved to where the thickness ends."""
+    points, piece = uniform_surface(random, solid.pieces, count)
+    return raised(random, solid, points, piece), piece
+
+
+def raised(
+    random: np.random.Generator, solid: Solid, points: Float64Array, piece: Int64Array
+) -> Float64Array:
+    """Points (n, 3) on pieces (n,), those on open surfaces moved to where the thickness ends.
+
+    In front of one of two faces back to back; of a single one on either side. Changes `points`.
+    """
+    thick = np.flatnonzero(solid.open_surface[piece])
+    on = piece[thick]
+    side = np.where(solid.wall[on] | (random.random(len(on)) < 0.5), 1.0, -1.0)
+    points[thick] += (solid.half_thickness * side)[:, None] * normals(solid.pieces[on])
+    return points
+
+
+def laplace_offsets(
+    random: np.random.Generator, surface: Float64Array, spread: float, limit: float
+) -> Float64Array:
+    """Points beside surface points (n, 3) whose |SDF| has the mean `spread` (exact on a plane).
+
+    Each moves in a random direction by a Gamma(2, spread) distance: the part of that along the
+    normal is Laplace-distributed, and edges are surrounded from all sides. What leaves the cube
+    [-limit, limit]^3 is left out, so that fewer may come back.
+    """
+    direction = random.normal(size=surface.shape)
+    direction /= np.linalg.norm(direction, axis=1, keepdims=True)
+    points = surface + direction * random.gamma(2.0, spread, size=(len(surface), 1))
+    return points[np.abs(points).max(axis=1) <= limit]
 
 
 def uniform_ball(random: np.random.Generator, count: int) -> Float64Array:

@@ -8,8 +8,8 @@ import numpy as np
 
 from nispcodec.core.arrays import BoolArray, Float64Array, Int32Array
 from nispcodec.core.asset import TexturedMesh
+from nispcodec.core.connectivity import row_ids
 from nispcodec.core.errors import MeshError
-from nispcodec.geometry.charts import row_ids
 
 # A triangle lower than this share of its longest edge is a line.
 FLATTEST = 1e-10

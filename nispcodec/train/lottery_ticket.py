@@ -38,14 +38,14 @@ def fit(
                     f"{task.name} network: nothing is left of {name}: expected a lower prune rate "
                     f"than {rates[-1]:g}, or another strategy than smallest_global"
                 )
-        this = task if rate == rates[-1] else replace(task, rounding=None)
+        this = task if rate == rates[-1] else replace(task, quantization=None)
         return train(this, seed, device, core, next(heard), mask)
 
-    *_, network = tickets(task, task.pruning.strategy, rates, trained)
+    *_, network = lottery_ticket(task, task.pruning.strategy, rates, trained)
     return network
 
 
-def tickets(
+def lottery_ticket(
     task: Task, strategy: str, rates: Sequence[float], trained: Callable[[Mask, float], Network]
 ) -> Iterator[Network]:
     """The network unpruned and at every one of some rising rates, each `trained(mask, rate)`."""

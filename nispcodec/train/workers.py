@@ -24,9 +24,6 @@ from nispcodec.core.progress import Listener, Progress
 from nispcodec.train.lottery_ticket import fit
 from nispcodec.train.task import Task
 
-PATIENCE = 1.0
-"""Seconds without news after which to look whether every process is still there."""
-
 Message = tuple[str, Progress | Network | Exception]
 Core = AbstractContextManager[object]
 Context = ForkContext | SpawnContext
@@ -91,7 +88,7 @@ def _started(
 
 
 def _work(task: Task, seed: int, device: str, core: Core, messages: Queue[Message]) -> None:
-    """What a process does: tell progress, then the network or what went wrong.
+    """The work of a process: tell progress, then the network or what went wrong.
 
     Ctrl-C reaches every process; only the one that started the others answers it. Should that one
     be killed, nobody is left to want an answer.
@@ -125,7 +122,7 @@ def _collected(
     networks: dict[str, Network] = {}
     while len(networks) < len(workers):
         try:
-            name, told = messages.get(timeout=PATIENCE)
+            name, told = messages.get(timeout=1.0)  # then look whether every process is there
         except queue.Empty:
             _check_alive(workers, networks)
             continue

@@ -12,25 +12,20 @@ import json
 import platform
 import sys
 from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
-from unittest import mock
 
 import numpy as np
 
 import nispcodec
 from nispcodec import EncodeConfig, TexturedMesh
-from nispcodec.dataset import recipes as training
 from nispcodec.format import pack
 from nispcodec.io.write.glb import glb_bytes
 from nispcodec.procedural.mug import sample_asset
-from nispcodec.train import presets
-from nispcodec.train.presets import Effort
+from tests.encode.tunings import small
 from tests.geometry.shapes import box_asset, hemisphere, soup
 
 EXPECTED = Path(__file__).with_name("expected.json")
 CONFORMANCE = Path(__file__).parent.parent / "conformance"
-COUNTS = ("NEAR", "TIGHT", "CUBE", "WIDE", "SKIN", "DETAIL", "HELD_OUT", "PAPER", "THIN")
 
 
 def main() -> int:
@@ -72,19 +67,9 @@ def fits() -> Iterator[tuple[str, str]]:
         "mug, 4 kB": (sample_asset(), EncodeConfig(target_size=4000, textures=False)),
         "hemisphere": (soup(hemisphere()), EncodeConfig(seed=3)),
     }
-    with small():
-        for name, (mesh, config) in cases.items():
-            yield name, digest(pack(nispcodec.encode(mesh, config).document))
-
-
-@contextmanager
-def small() -> Iterator[None]:
-    """Fits of a second."""
-    effort = dict.fromkeys(presets.EFFORTS, Effort(0.4, 0.6, 3, 50))
-    short = mock.patch.multiple(presets, EFFORTS=effort, PROBE_STEPS=100, PAPER_STEPS=60)
-    few = mock.patch.multiple(training, **{f"{name}_COUNT": 6000 for name in COUNTS})
-    with short, few:
-        yield
+    tuning = small(6000, 0.4, 3, 50, 100)
+    for name, (mesh, config) in cases.items():
+        yield name, digest(pack(nispcodec.encode(mesh, config, tuning=tuning).document))
 
 
 def conformance() -> Iterator[tuple[str, str]]:

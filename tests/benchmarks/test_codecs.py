@@ -14,7 +14,7 @@ from benchmarks.corners import corners_of
 from benchmarks.simplify import simplified
 from benchmarks.source import Source
 from nispcodec.core.asset import TexturedMesh
-from nispcodec.encode.recipe import PRESETS, EncodeConfig
+from nispcodec.encode.config import PRESETS, EncodeConfig
 from nispcodec.format import pack
 from nispcodec.io.save import write_mesh
 from nispcodec.model import NispModel

@@ -7,9 +7,10 @@ import numpy as np
 from benchmarks.rounding_loss import floats
 from nispcodec.core.network import Network, NetworkSpec
 from nispcodec.core.progress import silent
-from nispcodec.train import workers as parallel
-from nispcodec.train.backend.torch.losses import CURVATURES, distance_error, relative_distance_loss
-from nispcodec.train.task import Rounding, Schedule, Task
+from nispcodec.encode import fitting
+from nispcodec.train.config import LossConfig
+from nispcodec.train.objectives import SdfObjective
+from nispcodec.train.task import Quantization, Schedule, Task
 from tests.train.test_loop import ball_samples
 
 
@@ -20,12 +21,11 @@ def fitted() -> Network:
         NetworkSpec((8,), 1),
         samples,
         held_out,
-        relative_distance_loss,
-        distance_error,
+        SdfObjective(LossConfig()),
         Schedule(40, 256),
-        Rounding(CURVATURES["sdf"], 1e-3),
+        Quantization(1e-3),
     )
-    return parallel.fit_networks([task], 0, "cpu", 1, silent)["sdf"]
+    return fitting.fit_networks([task], 0, "cpu", 1, silent)["sdf"]
 
 
 def test_floats_are_what_the_same_fit_rounds() -> None:

@@ -10,7 +10,7 @@ from nispcodec_cli.progress import Bars, Lines, described, duration
 import nispcodec
 from nispcodec.core.errors import FitError
 from nispcodec.core.progress import Progress
-from nispcodec.encode.recipe import PRESETS
+from nispcodec.encode.config import PRESETS
 from nispcodec.model import NispModel
 from nispcodec.train.prune import STRATEGIES
 from tests import tiny

@@ -7,9 +7,9 @@ from dataclasses import replace
 import numpy as np
 
 from nispcodec.core.asset import Material, TexturedMesh
-from nispcodec.dataset.chart_error_weight import confusion
-from nispcodec.dataset.sampler import Sampler
+from nispcodec.dataset.chart_error_weight import chart_error_weight
 from tests.geometry.shapes import box_asset
+from tests.samplers import sampler_of
 
 
 def painted(first: float, second: float) -> TexturedMesh:
@@ -23,10 +23,10 @@ def painted(first: float, second: float) -> TexturedMesh:
 
 
 def test_it_is_found_where_another_color_is_near_and_nowhere_else() -> None:
-    sampler = Sampler(painted(0, 1), 0)
+    sampler = sampler_of(painted(0, 1), 0)
     samples = sampler.surface(5000)
-    found = confusion(painted(0, 1), sampler.table, samples)
-    white = sampler.table.materials[samples.chart] == 1
+    found = chart_error_weight(painted(0, 1), sampler.analysis.table, samples, 16)
+    white = sampler.analysis.table.materials[samples.chart] == 1
     gaps = np.linalg.norm(samples.points[white][:, None] - samples.points[~white], axis=2)
     assert 0 < (found > 0).sum() < len(found) / 2
     assert (found[white][gaps.min(axis=1) > 0.2] == 0).all()
@@ -36,17 +36,17 @@ def test_it_is_found_where_another_color_is_near_and_nowhere_else() -> None:
 
 
 def test_charts_of_one_color_cannot_be_confused() -> None:
-    sampler = Sampler(painted(0.5, 0.5), 0)
+    sampler = sampler_of(painted(0.5, 0.5), 0)
     samples = sampler.surface(1000)
     assert len(np.unique(samples.chart)) > 1
-    assert not confusion(painted(0.5, 0.5), sampler.table, samples).any()
-    assert len(sampler.confusing(samples, 50)) == 0
+    assert not chart_error_weight(painted(0.5, 0.5), sampler.analysis.table, samples, 16).any()
+    assert len(sampler.by_chart_error(samples, 50)) == 0
 
 
 def test_samples_are_drawn_again_where_it_is() -> None:
-    sampler = Sampler(painted(0, 1), 0)
+    sampler = sampler_of(painted(0, 1), 0)
     samples = sampler.surface(5000)
-    again = sampler.confusing(samples, 300)
-    confused = confusion(painted(0, 1), sampler.table, samples) > 0
+    again = sampler.by_chart_error(samples, 300)
+    confused = chart_error_weight(painted(0, 1), sampler.analysis.table, samples, 16) > 0
     assert len(again) == 300
     assert set(map(bytes, again.points)) <= set(map(bytes, samples.points[confused]))

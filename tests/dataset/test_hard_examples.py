@@ -6,7 +6,9 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from nispcodec.dataset.hard_examples import REACH, reaches
+from nispcodec.dataset.hard_examples import error_radii
+
+RADIUS = 0.075
 
 
 def grid() -> np.ndarray:
@@ -22,24 +24,24 @@ def ball(points: np.ndarray, center: float, radius: float) -> np.ndarray:
 
 def test_a_field_without_mistakes_has_no_reach() -> None:
     sdf = ball(grid(), 0.0, 0.15)
-    assert not reaches(grid(), sdf, 0.3 * sdf).any()
+    assert not error_radii(grid(), sdf, 0.3 * sdf, RADIUS).any()
 
 
 def test_a_missing_part_weighs_more_than_a_surface_that_is_a_little_off() -> None:
     points = grid()
     whole = np.minimum(ball(points, -0.1, 0.1), ball(points, 0.2, 0.05))
-    missing_part = reaches(points, whole, ball(points, -0.1, 0.1))
-    a_little_off = reaches(points, whole, whole + np.float32(0.01))
+    missing_part = error_radii(points, whole, ball(points, -0.1, 0.1), RADIUS)
+    a_little_off = error_radii(points, whole, whole + np.float32(0.01), RADIUS)
     part = ball(points, 0.2, 0.05) < 0
-    assert missing_part[part].min() == np.float32(REACH)
+    assert missing_part[part].min() == np.float32(RADIUS)
     assert not missing_part[~part].any()
-    assert 0 < a_little_off.max() < REACH / 2
+    assert 0 < a_little_off.max() < RADIUS / 2
 
 
 def test_a_gap_that_is_filled_counts_like_a_part_that_is_missing() -> None:
     points, sdf = grid(), ball(grid(), 0.0, 0.15)
-    missing = reaches(points, sdf, np.full_like(sdf, 1.0))
-    filled = reaches(points, -sdf, np.full_like(sdf, -1.0))
+    missing = error_radii(points, sdf, np.full_like(sdf, 1.0), RADIUS)
+    filled = error_radii(points, -sdf, np.full_like(sdf, -1.0), RADIUS)
     np.testing.assert_array_equal(missing > 0, sdf < 0)
     np.testing.assert_array_equal(missing, filled)
 
@@ -49,14 +51,14 @@ def test_reaches_are_of_mistakes_only_and_bounded(count: int, seed: int) -> None
     random = np.random.default_rng(seed)
     points = random.uniform(-1, 1, (count, 3)).astype(np.float32)
     sdf, field = random.normal(size=(2, count)).astype(np.float32)
-    found = reaches(points, sdf, field)
+    found = error_radii(points, sdf, field, RADIUS)
     assert found.shape == (count,)
     assert ((found > 0) == ((sdf < 0) != (field < 0))).all()
-    assert (found <= np.float32(REACH)).all()
+    assert (found <= np.float32(RADIUS)).all()
 
 
 def test_a_body_far_from_the_surface_weighs_as_much_as_it_is_far() -> None:
     points, sdf = grid(), ball(grid(), -0.2, 0.05)
     speck = ball(points, 0.25, 0.03)
-    found = reaches(points, sdf, np.minimum(sdf, speck), strays=True)
+    found = error_radii(points, sdf, np.minimum(sdf, speck), RADIUS, floaters=True)
     np.testing.assert_array_equal(found[speck < 0], sdf[speck < 0])

@@ -11,7 +11,7 @@ import pytest
 
 from nispcodec.core.asset import Material, Texture, TexturedMesh, TextureMap
 from nispcodec.core.texture import encode_image, image_bytes
-from nispcodec.edit.texture_padding import with_padded_gutters
+from nispcodec.edit.texture_padding import with_padded_textures
 from tests.geometry.shapes import soup
 
 RED, BLUE, GRAY = (255, 0, 0, 255), (0, 0, 255, 255), (90, 90, 90, 255)
@@ -33,7 +33,7 @@ def atlas(wrap: str = "repeat", shift: float = 0.0) -> TexturedMesh:
 @pytest.mark.parametrize("shift", [0.0, 3.0, -1.0])
 def test_gutters_take_the_nearest_color_and_charts_keep_theirs(shift: float) -> None:
     mesh = atlas(shift=shift)
-    image = image_bytes(with_padded_gutters(mesh, 90)[0])
+    image = image_bytes(with_padded_textures(mesh, 90)[0])
     before = image_bytes(mesh.textures[0])
     used = (before != GRAY).any(axis=2)
     assert (image[used] == before[used]).all()
@@ -44,14 +44,14 @@ def test_gutters_take_the_nearest_color_and_charts_keep_theirs(shift: float) -> 
 
 def test_images_that_no_face_shows_stay() -> None:
     mesh = atlas()
-    assert with_padded_gutters(mesh, 90)[1] is mesh.textures[1]
+    assert with_padded_textures(mesh, 90)[1] is mesh.textures[1]
 
 
 @pytest.mark.parametrize(("wrap", "stretch"), [("clamp", 1.5), ("mirror", 1.5), ("repeat", 4.0)])
 def test_images_that_are_repeated_or_left_stay(wrap: str, stretch: float) -> None:
     mesh = atlas(wrap)
     mesh = replace(mesh, uvs=mesh.uvs * stretch)
-    assert with_padded_gutters(mesh, 90) == mesh.textures
+    assert with_padded_textures(mesh, 90) == mesh.textures
 
 
 @pytest.mark.parametrize("kind", ["jpeg", "webp", "png"])
@@ -59,7 +59,7 @@ def test_formats_and_names_stay(kind: str) -> None:
     mesh = atlas()
     pixels = image_bytes(mesh.textures[0])
     before = Texture("own.name", encode_image(pixels, kind, 90), f"image/{kind}")
-    (after,) = with_padded_gutters(replace(mesh, textures=(before,)), 90)
+    (after,) = with_padded_textures(replace(mesh, textures=(before,)), 90)
     assert (after.name, after.mime) == (before.name, before.mime)
     assert PIL.Image.open(io.BytesIO(after.data)).format == kind.upper()
     assert np.abs(image_bytes(after)[-1, -1].astype(int) - BLUE).max() < 100

@@ -9,28 +9,23 @@ import numpy as np
 import pytest
 
 import nispcodec
-from nispcodec import EncodeConfig, NispError, TexturedMesh
+from nispcodec import EncodeConfig, NispError, NispModel, TexturedMesh
+from nispcodec.core.progress import Listener, silent
 from nispcodec.core.texture import reencode
-from nispcodec.dataset import recipes as training
-from nispcodec.edit.texture_padding import with_padded_gutters
-from nispcodec.encode.recipe import PRESETS
+from nispcodec.edit.texture_padding import with_padded_textures
+from nispcodec.encode.config import PRESETS
 from nispcodec.format import pack, unpack
 from nispcodec.procedural.mug import sample_asset
-from nispcodec.train import presets
-from nispcodec.train.presets import Effort
+from tests.encode.tunings import small
 from tests.geometry.shapes import box_asset, cube, soup
 
+SHORT = small(3000, 0.2, 1, 100, 30, lambda_=1e-6)
 
-@pytest.fixture(autouse=True)
-def short(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(
-        presets, "EFFORTS", dict.fromkeys(presets.EFFORTS, Effort(0.2, 0.6, 1, 100))
-    )
-    monkeypatch.setattr(presets, "PROBE_STEPS", 30)
-    monkeypatch.setattr(presets, "PAPER_STEPS", 60)
-    monkeypatch.setattr(presets, "PRICES", dict.fromkeys(presets.PRICES, 1e-6))
-    for name in ("NEAR", "TIGHT", "CUBE", "WIDE", "SKIN", "DETAIL", "HELD_OUT", "PAPER", "THIN"):
-        monkeypatch.setattr(training, f"{name}_COUNT", 3000)
+
+def encode(
+    mesh: TexturedMesh, config: EncodeConfig | None = None, progress: Listener = silent
+) -> NispModel:
+    return nispcodec.encode(mesh, config, progress, SHORT)
 
 
 def bare(mesh: TexturedMesh) -> TexturedMesh:
@@ -38,7 +33,7 @@ def bare(mesh: TexturedMesh) -> TexturedMesh:
 
 
 def test_an_asset_with_charts_and_materials() -> None:
-    document = nispcodec.encode(box_asset()).document
+    document = encode(box_asset()).document
     assert list(document.networks) == ["sdf", "chart", "uv"]
     assert document.materials == box_asset().materials
     assert document.frame.radius == pytest.approx(np.sqrt(3))
@@ -48,32 +43,32 @@ def test_an_asset_with_charts_and_materials() -> None:
 @pytest.mark.parametrize("preset", PRESETS)
 def test_a_pruned_network_has_zeros_in_the_file(preset: str) -> None:
     how = EncodeConfig(preset, prune="smallest", prune_rate={"chart": 0.6, "uv": 0.3})
-    document = unpack(pack(nispcodec.encode(box_asset(), how).document))
+    document = unpack(pack(encode(box_asset(), how).document))
     for name, rate in (("sdf", 0.0), ("chart", 0.6), ("uv", 0.3)):
         matrix = document.networks[name].tensors["weight.1"]
         assert rate - 0.01 <= (matrix == 0).mean() < rate + 0.2
 
 
 def test_a_mesh_without_uv_is_geometry_alone() -> None:
-    document = nispcodec.encode(bare(soup(cube((0, 0, 0), 1.0)))).document
+    document = encode(bare(soup(cube((0, 0, 0), 1.0)))).document
     assert list(document.networks) == ["sdf"]
 
 
 def test_materials_survive_without_uv() -> None:
-    document = nispcodec.encode(bare(box_asset())).document
+    document = encode(bare(box_asset())).document
     assert list(document.networks) == ["sdf", "chart"]
     assert document.charts.materials.tolist() == [0, 1]
 
 
 def test_the_same_input_and_seed_give_the_same_bytes(tmp_path: Path) -> None:
-    models = [nispcodec.encode(box_asset(), EncodeConfig(seed=seed)) for seed in (0, 0, 1)]
+    models = [encode(box_asset(), EncodeConfig(seed=seed)) for seed in (0, 0, 1)]
     first, again, other = (pack(model.document) for model in models)
     assert first == again
     assert first != other
 
 
 def test_what_is_stored_is_what_was_measured(tmp_path: Path) -> None:
-    model = nispcodec.encode(box_asset())
+    model = encode(box_asset())
     nispcodec.save(model, tmp_path / "a.nisp")
     loaded = nispcodec.load(tmp_path / "a.nisp")
     points = np.random.default_rng(0).uniform(-1, 1, (100, 3))
@@ -83,7 +78,7 @@ def test_what_is_stored_is_what_was_measured(tmp_path: Path) -> None:
 
 
 def test_the_paper_preset_has_the_published_networks_and_every_chart() -> None:
-    document = nispcodec.encode(box_asset(), EncodeConfig(preset="paper")).document
+    document = encode(box_asset(), EncodeConfig(preset="paper")).document
     counts = {name: network.spec.weight_count for name, network in document.networks.items()}
     assert counts == {"sdf": 31_169, "chart": 31_104 + 65 * 6, "uv": 31_874}
 
@@ -91,11 +86,11 @@ def test_the_paper_preset_has_the_published_networks_and_every_chart() -> None:
 def test_textures_stay_are_padded_reencoded_or_left_out() -> None:
     mesh = sample_asset()
     kept, smaller, none = (
-        nispcodec.encode(mesh, EncodeConfig(**options)).document
+        encode(mesh, EncodeConfig(**options)).document
         for options in ({}, {"pad_textures": True, "texture_format": "webp"}, {"textures": False})
     )
     assert kept.textures == mesh.textures
-    assert smaller.textures == reencode(with_padded_gutters(mesh, 100), "webp", 90)
+    assert smaller.textures == reencode(with_padded_textures(mesh, 100), "webp", 90)
     assert {texture.mime for texture in smaller.textures} == {"image/webp"}
     assert smaller.materials == mesh.materials
     assert none.textures == ()
@@ -110,7 +105,7 @@ def test_nonsense_settings_are_refused(options: dict[str, object]) -> None:
 
 def test_stages_and_networks_are_reported() -> None:
     seen: list[nispcodec.Progress] = []
-    nispcodec.encode(box_asset(), progress=seen.append)
+    encode(box_asset(), progress=seen.append)
     assert {progress.network for progress in seen} == {"", "sdf", "chart", "uv"}
     stages = list(dict.fromkeys(progress.stage for progress in seen if not progress.network))
     assert stages[:4] == ["textures", "charts and hidden walls", "samples", "fit"]

@@ -14,22 +14,28 @@ from nispcodec.core.errors import FitError
 from nispcodec.core.network import Network
 from nispcodec.core.progress import Listener, Progress, silent
 from nispcodec.dataset.recipes import TrainingSets
-from nispcodec.encode.targets import Fitting, Networks, fit_to_error, fit_to_size, fit_with_preset
+from nispcodec.encode.targets import (
+    FitContext,
+    Networks,
+    fit_to_error,
+    fit_to_size,
+    fit_with_preset,
+)
 from nispcodec.format import pack
-from nispcodec.geometry.symmetry import Mirrors
-from nispcodec.train.presets import Effort, Problem
+from nispcodec.train.config import TrainingBudget
 from nispcodec.train.task import Task
+from nispcodec.train.tasks import AssetProblem
 from nispcodec.train.workers import fit_networks
 from tests.train.test_loop import ball_samples
 
 TABLE = ChartTable(materials=np.zeros(1, np.int32), has_uv=np.zeros(1, np.bool_))
 
 
-def problem() -> Problem:
+def problem() -> AssetProblem:
     samples, held_out = ball_samples(4000, 0), ball_samples(500, 1)
     held_out = replace(held_out, sdf=np.zeros_like(held_out.sdf))
-    sets = TrainingSets(samples, samples, held_out, held_out, samples, samples[:0])
-    return Problem(sets, 1, False, 5.0, Mirrors(0, 0))
+    sets = TrainingSets(samples, samples, samples, held_out, held_out, samples[:0])
+    return AssetProblem(sets, 1, False, 5.0, 0, 0)
 
 
 def really(tasks: list[Task], listen: Listener) -> Networks:
@@ -48,8 +54,8 @@ def by_law(tasks: list[Task], listen: Listener) -> Networks:
     return networks
 
 
-def fitting(fit=by_law, listen: Listener = silent) -> Fitting:
-    return Fitting(problem(), Effort(2.0, 0.5, 1, 100), fit, listen)
+def fitting(fit=by_law, listen: Listener = silent) -> FitContext:
+    return FitContext(problem(), TrainingBudget(2.0, 0.5, 1, 100), fit, listen)
 
 
 def document(networks: Mapping[str, Network]) -> Document:

@@ -7,12 +7,14 @@ import pytest
 from numpy.typing import ArrayLike
 
 from nispcodec.core.arrays import Float64Array
-from nispcodec.geometry.distance import LIFT, DistanceField
-from nispcodec.geometry.solid import SHELL, THIN, Solid, area, build_solid
+from nispcodec.geometry.config import SolidConfig
+from nispcodec.geometry.distance import DistanceField
+from nispcodec.geometry.solid import Solid, area, build_solid
 from tests.geometry.shapes import cube, hemisphere
 
+HALF, THIN, LIFT = SolidConfig.half_thickness, SolidConfig.thin_wall, SolidConfig.sheet_lift
 CARD = np.array([[[-1, -1, 0], [1, -1, 0], [1, 1, 0]], [[-1, -1, 0], [1, 1, 0], [-1, 1, 0]]]) / 2
-HEIGHTS = np.array([0.0, SHELL, 0.1])
+HEIGHTS = np.array([0.0, HALF, 0.1])
 
 
 def heights_above(solid: Solid, heights: ArrayLike = HEIGHTS) -> Float64Array:
@@ -58,15 +60,15 @@ def test_the_inside_of_an_inverted_body_is_inside() -> None:
 def test_a_card_gets_a_thickness() -> None:
     solid = build_solid(CARD)
     assert solid.open_surface_share == 1
-    assert heights_above(solid) == pytest.approx(HEIGHTS - SHELL, abs=2 * LIFT)
+    assert heights_above(solid) == pytest.approx(HEIGHTS - HALF, abs=2 * LIFT)
 
 
 @pytest.mark.parametrize("gap", [0.0, 1e-4, THIN / 2])
 def test_two_cards_back_to_back_get_a_thickness(gap: float) -> None:
     solid = build_solid(back_to_back(gap))
     assert solid.open_surface_share == 1
-    assert heights_above(solid) == pytest.approx(np.maximum(HEIGHTS - gap, 0) - SHELL, abs=2 * LIFT)
-    assert heights_above(solid, [gap / 2]) == pytest.approx(gap / 2 - SHELL, abs=2 * LIFT)
+    assert heights_above(solid) == pytest.approx(np.maximum(HEIGHTS - gap, 0) - HALF, abs=2 * LIFT)
+    assert heights_above(solid, [gap / 2]) == pytest.approx(gap / 2 - HALF, abs=2 * LIFT)
 
 
 def test_of_two_faces_back_to_back_the_one_on_the_same_side_is_closest() -> None:

@@ -6,10 +6,10 @@ from pathlib import Path
 
 import pytest
 
-from nispcodec.dataset.sampler import Sampler
 from nispcodec.geometry.charts import split_charts
-from nispcodec.geometry.symmetry import Mirrors
+from nispcodec.geometry.symmetry import Symmetry
 from nispcodec.io.load import load_mesh
+from tests.samplers import analysis_of
 
 ASSETS = Path(__file__).resolve().parents[3] / "shared" / "assets"
 
@@ -49,16 +49,16 @@ def test_real_asset(name: str):
 @pytest.mark.parametrize(
     ("name", "expected"),
     [
-        ("spot", Mirrors(sdf=0b000001, uv=0)),
-        ("exploding_barrel", Mirrors(sdf=0b100101, uv=0)),
-        ("chess_king", Mirrors(sdf=0b000101, uv=0)),
-        ("boombox", Mirrors(sdf=0b001001, uv=0)),
-        ("gz_polaris", Mirrors(sdf=0b001001, uv=0b001001)),
-        ("tea_set_01", Mirrors(sdf=0, uv=0)),
+        ("spot", Symmetry(sdf=0b000001, uv=0)),
+        ("exploding_barrel", Symmetry(sdf=0b100101, uv=0)),
+        ("chess_king", Symmetry(sdf=0b000101, uv=0)),
+        ("boombox", Symmetry(sdf=0b001001, uv=0)),
+        ("gz_polaris", Symmetry(sdf=0b001001, uv=0b001001)),
+        ("tea_set_01", Symmetry(sdf=0, uv=0)),
     ],
 )
-def test_symmetry_of_real_assets(name: str, expected: Mirrors) -> None:
+def test_symmetry_of_real_assets(name: str, expected: Symmetry) -> None:
     path = ASSETS / name / f"{name}.obj"
     if not path.exists():
         pytest.skip(f"no asset {path}")
-    assert Sampler(load_mesh(path), seed=0).mirrors == expected
+    assert analysis_of(load_mesh(path)).symmetry == expected

@@ -29,7 +29,7 @@ def test_a_network_of_zeros_answers_with_its_frames(mirror: int) -> None:
     seen = np.where([mirror >> axis & 1 for axis in range(3)], np.abs(POINTS), POINTS)
     uvs = uvs_of(seen).astype(np.float32)
     module = Module(spec, "cpu")
-    module.place_frames(*map(torch.from_numpy, (POINTS, CHARTS, uvs)))
+    module.place_chart_affine(*map(torch.from_numpy, (POINTS, CHARTS, uvs)), 1e-4)
     tensors = {name: np.zeros(shape, np.float32) for name, shape in spec.shapes.items()}
     placed = module.network().tensors
     network = Network(spec, tensors | {name: placed[name] for name in ("slopes", "offsets")})
@@ -39,11 +39,11 @@ def test_a_network_of_zeros_answers_with_its_frames(mirror: int) -> None:
 def test_the_direction_across_a_flat_chart_stays_out_of_it() -> None:
     flat = POINTS.astype(np.float64)
     flat[:, 2] = np.random.default_rng(1).normal(scale=1e-4, size=200)
-    slopes, _ = affine_maps(flat, CHARTS, uvs_of(POINTS), 3)
+    slopes, _ = affine_maps(flat, CHARTS, uvs_of(POINTS), 3, 1e-4)
     assert np.abs(slopes.reshape(3, 2, 3)[:, :, 2]).max() < 1
 
 
-def test_a_chart_without_points_has_no_frame() -> None:
-    slopes, offsets = affine_maps(POINTS.astype(np.float64), CHARTS, uvs_of(POINTS), 3)
+def test_a_chart_without_points_has_no_map() -> None:
+    slopes, offsets = affine_maps(POINTS.astype(np.float64), CHARTS, uvs_of(POINTS), 3, 1e-4)
     assert not slopes[1].any()
     assert not offsets[1].any()

@@ -19,23 +19,20 @@ from torch import Tensor
 from nispcodec.core.errors import FitError
 from nispcodec.core.network import Network, NetworkSpec
 from nispcodec.core.progress import Progress, silent
-from nispcodec.dataset.sample_set import SampleSet
+from nispcodec.core.sample_set import SampleSet
 from nispcodec.infer.evaluate import evaluate
 from nispcodec.train import workers as parallel
-from nispcodec.train.backend.torch.losses import (
-    CURVATURES,
-    chart_error,
-    chart_loss,
-    distance_error,
-    relative_distance_loss,
-)
 from nispcodec.train.backend.torch.module import Module, snapped
 from nispcodec.train.backend.torch.muon import Muon, orthogonal
 from nispcodec.train.backend.torch.soap import Soap
+from nispcodec.train.batch import Batch
+from nispcodec.train.config import LossConfig, QuantizeConfig, TrainConfig
 from nispcodec.train.loop import train
-from nispcodec.train.task import Batch, Rounding, Schedule, Task
+from nispcodec.train.objectives import ChartObjective, SdfObjective
+from nispcodec.train.task import Quantization, Schedule, Task
 from nispcodec.train.workers import fit_networks, resolve_device
 
+SDF = SdfObjective(LossConfig())
 FINE = 2.0**-24
 """A step that nobody sees."""
 
@@ -51,12 +48,18 @@ def sdf_task(steps: int = 300, rate: float = 1e-3, optimizer: str = "muon") -> T
     spec = NetworkSpec((16, 16), 1, w0=5.0)
     schedule = Schedule(steps, 256, rate, optimizer)
     samples = ball_samples(4000, 0), ball_samples(500, 1)
-    return Task("sdf", spec, *samples, relative_distance_loss, distance_error, schedule)
+    return Task("sdf", spec, *samples, SDF, schedule)
 
 
 def chart_task() -> Task:
-    loss, error = chart_loss, chart_error
-    return replace(sdf_task(), name="chart", spec=NetworkSpec((8,), 2), loss=loss, error=error)
+    objective = ChartObjective(LossConfig())
+    return replace(sdf_task(), name="chart", spec=NetworkSpec((8,), 2), objective=objective)
+
+
+def judged_by(task: Task, error: Callable[[Module, Batch], Tensor]) -> Task:
+    """The task with another held-out error."""
+    kind = type("Judged", (type(task.objective),), {"error": staticmethod(error)})
+    return replace(task, objective=kind(LossConfig()))
 
 
 def run(task: Task, listen: Callable[[Progress], None] = silent, seed: int = 0) -> Network:
@@ -86,12 +89,12 @@ def test_the_returned_weights_are_the_best_seen() -> None:
     task = sdf_task()
 
     def noted(module: Module, batch: Batch) -> Tensor:
-        error = distance_error(module, batch).detach()
+        error = SDF.error(module, batch).detach()
         seen.append(float(error))
         return error
 
-    network = run(replace(task, error=noted))
-    final = float(distance_error(module_of(network), Batch.of(task.held_out, "cpu")).detach())
+    network = run(judged_by(task, noted))
+    final = float(SDF.error(module_of(network), Batch.of(task.held_out, "cpu")).detach())
     assert final == pytest.approx(min(seen), rel=1e-3)
 
 
@@ -101,11 +104,11 @@ def test_divergence_is_noticed_told_and_survived() -> None:
 
     def explodes(module: Module, batch: Batch) -> Tensor:
         calls["count"] += 1
-        error = distance_error(module, batch)
+        error = SDF.error(module, batch)
         return error * float("nan") if calls["count"] == 6 else error
 
     notes: list[str] = []
-    task = replace(sdf_task(), error=explodes)
+    task = judged_by(sdf_task(), explodes)
     network = run(task, lambda progress: notes.append(progress.note))
     told = [note for note in notes if note]
     assert len(told) == 1
@@ -115,7 +118,7 @@ def test_divergence_is_noticed_told_and_survived() -> None:
 
 
 def test_a_hopeless_fit_is_an_error() -> None:
-    task = replace(sdf_task(), error=lambda module, batch: torch.tensor(float("nan")))
+    task = judged_by(sdf_task(), lambda module, batch: torch.tensor(float("nan")))
     with pytest.raises(FitError, match=r"sdf network.*does not converge"):
         run(task)
 
@@ -137,9 +140,11 @@ def test_a_core_that_the_first_leaves_is_for_the_others() -> None:
 
     def meets(module: Module, batch: Batch) -> torch.Tensor:
         meeting.wait()
-        return distance_error(module, batch)
+        return SDF.error(module, batch)
 
-    others = [replace(sdf_task(1), name=name, loss=meets) for name in ("one", "two")]
+    kind = type("Meeting", (SdfObjective,), {"loss": staticmethod(meets)})
+    waiting = replace(sdf_task(1), objective=kind(LossConfig()))
+    others = [replace(waiting, name=name) for name in ("one", "two")]
     found = fit_networks([sdf_task(1), *others], 0, "cpu", 2, silent)
     assert set(found) == {"sdf", "one", "two"}
 
@@ -168,14 +173,14 @@ def test_an_interrupt_stops_every_network() -> None:
 
 
 def test_an_error_in_one_network_is_the_error_of_all() -> None:
-    hopeless = replace(chart_task(), error=lambda module, batch: torch.tensor(float("nan")))
+    hopeless = judged_by(chart_task(), lambda module, batch: torch.tensor(float("nan")))
     with pytest.raises(FitError, match=r"chart network.*does not converge"):
         fit_networks([sdf_task(100_000), hopeless], 0, "cpu", 2, silent)
     assert not multiprocessing.active_children()
 
 
 def test_a_process_that_is_killed_is_an_error() -> None:
-    killed = replace(chart_task(), error=lambda module, batch: os._exit(9))
+    killed = judged_by(chart_task(), lambda module, batch: os._exit(9))
     with pytest.raises(FitError, match="chart network: its process ended with code 9"):
         fit_networks([sdf_task(), killed], 0, "cpu", 2, silent)
 
@@ -240,7 +245,7 @@ def test_orthogonal_leaves_the_directions_and_evens_the_singular_values(
     assert torch.allclose(inner, torch.diag_embed(even), atol=1e-3)
 
 
-def test_reviews_bring_back_a_part_that_few_samples_show() -> None:
+def test_mining_brings_back_a_part_that_few_samples_show() -> None:
     """Of 8000 samples eight lie in the small ball."""
 
     def small(points: np.ndarray) -> np.ndarray:
@@ -250,8 +255,8 @@ def test_reviews_bring_back_a_part_that_few_samples_show() -> None:
         samples = ball_samples(count, seed)
         return replace(samples, sdf=np.minimum(samples.sdf, small(samples.points)))
 
-    def share_found(reviews: int) -> float:
-        schedule = replace(task.schedule, reviews=reviews)
+    def share_found(minings: int) -> float:
+        schedule = replace(task.schedule, minings=minings)
         network = run(replace(task, schedule=schedule))
         points = task.samples.points[small(task.samples.points) < 0]
         return float((evaluate(network, points)[:, 0] < 0).mean())
@@ -262,7 +267,7 @@ def test_reviews_bring_back_a_part_that_few_samples_show() -> None:
         samples=two_balls(8000, 0),
         held_out=two_balls(500, 1),
     )
-    assert share_found(reviews=4) > 0.5 > share_found(reviews=0)
+    assert share_found(minings=4) > 0.5 > share_found(minings=0)
 
 
 @pytest.mark.parametrize(
@@ -284,10 +289,9 @@ def test_rounding_that_costs_much_is_tried_again_and_the_best_stays(
 ) -> None:
     """As many times as there are `spoils`, each from the best weights; `notable`: as if large."""
     untried = list(spoils)
-    monkeypatch.setattr("nispcodec.train.loop.SLIGHT", slight)
+    config = QuantizeConfig(slight=slight)
     if notable is not None:
-        monkeypatch.setattr("nispcodec.train.loop.LARGE", 0)
-        monkeypatch.setattr("nispcodec.train.loop.NOTABLE", notable)
+        config = replace(config, large=0, notable=notable)
 
     def spoiled(module: Module, *_: object) -> None:
         with torch.no_grad():
@@ -297,7 +301,8 @@ def test_rounding_that_costs_much_is_tried_again_and_the_best_stays(
 
     monkeypatch.setattr("nispcodec.train.loop.round_weights", spoiled)
     plain = module_of(run(sdf_task())).weights
-    task = replace(sdf_task(), rounding=Rounding(CURVATURES["sdf"], 1e-3))
+    training = TrainConfig(quantize=config)
+    task = replace(sdf_task(), quantization=Quantization(1e-3), config=training)
     rounded = module_of(run(task)).weights
     assert untried == []
     assert float((rounded - plain - kept).detach().abs().max()) < 1e-5

@@ -9,7 +9,7 @@ import torch
 from nispcodec.core.network import NetworkSpec
 from nispcodec.infer.evaluate import evaluate
 from nispcodec.train.backend.torch.module import Module
-from nispcodec.train.presets import paper_chart, paper_sdf, paper_uv
+from nispcodec.train.tasks import paper_chart, paper_sdf, paper_uv
 
 SPECS = {
     "sine": NetworkSpec((9, 7), 3),

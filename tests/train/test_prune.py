@@ -15,10 +15,9 @@ from nispcodec.core.errors import FitError, NispError
 from nispcodec.core.network import Network, NetworkSpec
 from nispcodec.core.progress import Progress, silent
 from nispcodec.format import pack, unpack
-from nispcodec.train.backend.torch.losses import CURVATURES
 from nispcodec.train.backend.torch.module import Module
 from nispcodec.train.loop import train
-from nispcodec.train.lottery_ticket import fit, tickets
+from nispcodec.train.lottery_ticket import fit, lottery_ticket
 from nispcodec.train.prune import (
     NETWORKS,
     STRATEGIES,
@@ -31,7 +30,7 @@ from nispcodec.train.prune import (
     smallest,
     smallest_global,
 )
-from nispcodec.train.task import Rounding, Schedule
+from nispcodec.train.task import Quantization, Schedule
 from tests import tiny
 from tests.train.test_loop import sdf_task
 
@@ -143,14 +142,16 @@ def written(network: Network) -> Network:
 
 
 @pytest.mark.parametrize("optimizer", ["muon", "adam"])
-@pytest.mark.parametrize("price", [0.0, 1e-4])
-def test_what_is_pruned_is_exactly_zero_in_the_file(optimizer: str, price: float) -> None:
-    rounding = Rounding(CURVATURES["sdf"], price) if price else None
-    task = replace(sdf_task(), schedule=Schedule(80, 128, optimizer=optimizer), rounding=rounding)
+@pytest.mark.parametrize("lambda_", [0.0, 1e-4])
+def test_what_is_pruned_is_exactly_zero_in_the_file(optimizer: str, lambda_: float) -> None:
+    quantization = Quantization(lambda_) if lambda_ else None
+    task = replace(
+        sdf_task(), schedule=Schedule(80, 128, optimizer=optimizer), quantization=quantization
+    )
     rng = np.random.default_rng(0)
     mask = {name: rng.random(kept.shape) < 0.4 for name, kept in everything(task.spec).items()}
     network = written(train(task, 0, "cpu", threading.Lock(), silent, mask))
-    assert bool(network.steps) == (price > 0)
+    assert bool(network.steps) == (lambda_ > 0)
     for name, kept in mask.items():
         assert (network.tensors[name][~kept] == 0).all()
         assert (network.tensors[name][kept] != 0).mean() > 0.5
@@ -188,7 +189,7 @@ def test_a_ticket_is_judged_by_the_round_before_or_the_first(strategy: str) -> N
         made.append((rate, mask, tiny.random_network(task.spec, len(made))))
         return made[-1][2]
 
-    networks = list(tickets(task, strategy, [0.4, 0.7], trained))
+    networks = list(lottery_ticket(task, strategy, [0.4, 0.7], trained))
     assert networks == [network for *_, network in made]
     assert [rate for rate, *_ in made] == [0.0, 0.4, 0.7]
     judged = made[0 if strategy == "large_final" else 1][2].tensors
@@ -205,8 +206,8 @@ def test_a_network_that_would_be_a_constant_is_an_error() -> None:
 
 def test_rounds_are_told_and_only_the_last_is_quantized() -> None:
     seen: list[Progress] = []
-    rounding = Rounding(CURVATURES["sdf"], 1e-4)
-    task = replace(sdf_task(), schedule=Schedule(50, 128), rounding=rounding)
+    quantization = Quantization(1e-4)
+    task = replace(sdf_task(), schedule=Schedule(50, 128), quantization=quantization)
     task = replace(task, pruning=Pruning("smallest", 0.75, 2))
     network = fit(task, 0, "cpu", threading.Lock(), seen.append)
     stages = list(dict.fromkeys(update.stage for update in seen))

@@ -1,4 +1,4 @@
-"""Rounding: weights on the grid of their steps, errors that cancel, steps that follow the price."""
+"""Rounding: weights on the grid of their steps, errors that cancel, steps that follow lambda."""
 
 from __future__ import annotations
 
@@ -16,12 +16,14 @@ from nispcodec.core.errors import FitError
 from nispcodec.core.network import Network, NetworkSpec
 from nispcodec.core.progress import silent
 from nispcodec.format import records
-from nispcodec.train.backend.torch.losses import CURVATURES
 from nispcodec.train.backend.torch.module import Module, snapped
+from nispcodec.train.batch import Batch
+from nispcodec.train.config import LossConfig, QuantizeConfig
 from nispcodec.train.loop import train
+from nispcodec.train.objectives import OBJECTIVES, SdfObjective
 from nispcodec.train.prune import everything
-from nispcodec.train.quantize import HEAD, nearest, round_weights, shared_step
-from nispcodec.train.task import Batch, Curvature, Rounding
+from nispcodec.train.quantize import nearest, round_weights, shared_step
+from nispcodec.train.task import Quantization
 from tests.train.test_loop import ball_samples, module_of, sdf_task
 
 SPECS = {
@@ -30,6 +32,7 @@ SPECS = {
     "uv": NetworkSpec((6, 5), 2, conditioning="chart_affine", charts=4, embedding=3),
 }
 POINTS = 500
+OBJECTIVE = {name: kind(LossConfig()) for name, kind in OBJECTIVES.items()}
 
 
 def batch(name: str) -> Batch:
@@ -39,11 +42,13 @@ def batch(name: str) -> Batch:
     return replace(points, chart=charts, uv=torch.rand(POINTS, 2, generator=generator))
 
 
-def rounded(name: str, price: float, budget: float = 0.0) -> tuple[Module, Module]:
+def rounded(
+    name: str, lambda_: float, config: QuantizeConfig = QuantizeConfig()
+) -> tuple[Module, Module]:
     """A module of random weights, and the same rounded."""
     before, after = (Module(SPECS[name], "cpu") for _ in range(2))
-    rounding = Rounding(CURVATURES[name], price, budget)
-    round_weights(after, batch(name), rounding, torch.Generator().manual_seed(0))
+    generator = torch.Generator().manual_seed(0)
+    round_weights(after, batch(name), Quantization(lambda_), OBJECTIVE[name], generator, config)
     return before, after
 
 
@@ -73,8 +78,10 @@ def alone(before: Module, after: Module) -> Module:
     """A copy, each weight rounded to the nearest symbol of its own, on the other's grid."""
     assert after.steps is not None
     module = Module(before.spec, "cpu")
-    octaves = np.concatenate([tensor.row_shifts for tensor in records.tensors("sdf", after.network())])
-    grid = after.steps[after.groups] * 2 ** torch.from_numpy(octaves)[after.rows]
+    row_shifts = np.concatenate(
+        [tensor.row_shifts for tensor in records.tensors("sdf", after.network())]
+    )
+    grid = after.steps[after.groups] * 2 ** torch.from_numpy(row_shifts)[after.rows]
     module.weights.data = ((before.weights.detach() / grid).round() * grid).float()
     return module
 
@@ -91,11 +98,11 @@ def test_errors_cancel(name: str) -> None:
     assert off[0] < 0.6 * off[1]
 
 
-@pytest.mark.parametrize("price", [1e-2, 1e-3, 1e-4, 1e-5])
-def test_it_is_never_worse_than_each_weight_by_itself(price: float) -> None:
-    before, after = rounded("sdf", price)
+@pytest.mark.parametrize("lambda_", [1e-2, 1e-3, 1e-4, 1e-5])
+def test_it_is_never_worse_than_each_weight_by_itself(lambda_: float) -> None:
+    before, after = rounded("sdf", lambda_)
     part, each_alone = batch("sdf"), alone(before, after)
-    factors = CURVATURES["sdf"].factors(outputs(before, part), part)[:, 0]
+    factors = OBJECTIVE["sdf"].factors(outputs(before, part), part)[:, 0]
     rises = [
         ((outputs(module, part) - outputs(before, part)) * factors).square().mean()
         for module in (after, each_alone)
@@ -106,24 +113,29 @@ def test_it_is_never_worse_than_each_weight_by_itself(price: float) -> None:
 @pytest.mark.parametrize("name", SPECS)
 def test_factors_are_of_the_shape_of_the_outputs(name: str) -> None:
     part = batch(name)
-    found = CURVATURES[name].factors(outputs(rounded(name, 1e-3)[0], part), part)
+    found = OBJECTIVE[name].factors(outputs(rounded(name, 1e-3)[0], part), part)
     assert found.shape[:2] == (POINTS, SPECS[name].outputs)
     assert torch.isfinite(found).all()
 
 
-def squared(outputs: torch.Tensor, _: Batch) -> torch.Tensor:
-    return torch.ones(len(outputs), 1, 1)
+class Squared(SdfObjective):
+    """Half the mean square of the outputs."""
+
+    damping = 1e-6
+
+    def factors(self, outputs: torch.Tensor, batch: Batch) -> torch.Tensor:
+        return torch.ones(len(outputs), 1, 1)
 
 
-def test_the_rise_is_what_the_price_says() -> None:
+def test_the_rise_is_what_lambda_says() -> None:
     """Of half the mean square, a loss whose second derivatives these are."""
     module = Module(SPECS["sdf"], "cpu")
     part = batch("sdf")
-    before, price = outputs(module, part), 1e-10
-    rounding = Rounding(Curvature(squared, 1e-6), price)
-    round_weights(module, part, rounding, torch.Generator().manual_seed(0))
+    before, lambda_ = outputs(module, part), 1e-10
+    objective = Squared(LossConfig())
+    round_weights(module, part, Quantization(lambda_), objective, torch.Generator().manual_seed(0))
     rise = float((outputs(module, part) - before).square().mean()) / 2
-    assert rise == pytest.approx(price / (2 * math.log(2)), rel=0.5)
+    assert rise == pytest.approx(lambda_ / (2 * math.log(2)), rel=0.5)
 
 
 @given(st.integers(0, 2**32), st.integers(1, 12))
@@ -144,8 +156,9 @@ def test_a_budget_is_kept(bits: float) -> None:
     module, generator = Module(SPECS["sdf"], "cpu"), torch.Generator().manual_seed(0)
     module.weights.data += module.first * torch.randn(len(module.first), generator=generator) / 2
     count = len(module.weights)
-    budget = bits * count + HEAD * len(module.scales)
-    round_weights(module, batch("sdf"), Rounding(CURVATURES["sdf"], 1e-3, budget), generator)
+    budget = bits * count + QuantizeConfig.header_bits * len(module.scales)
+    quantization = Quantization(1e-3, budget)
+    round_weights(module, batch("sdf"), quantization, OBJECTIVE["sdf"], generator)
     found = sum(
         moves.size * max(0.0, math.log2(float(np.abs(moves).mean()) * 5.18))
         for moves in (
@@ -162,8 +175,8 @@ def test_what_is_pruned_stays_zero_and_a_whole_tensor_may_go() -> None:
     mask["weight.1"][:] = False
     mask["weight.0"][::2] = False
     module.prune(mask)
-    rounding = Rounding(CURVATURES["sdf"], 1e-6)
-    round_weights(module, batch("sdf"), rounding, torch.Generator().manual_seed(0))
+    quantization, objective = Quantization(1e-6), OBJECTIVE["sdf"]
+    round_weights(module, batch("sdf"), quantization, objective, torch.Generator().manual_seed(0))
     network = module.network()
     assert not network.tensors["weight.1"].any()
     assert not network.tensors["weight.0"][::2].any()
@@ -173,26 +186,26 @@ def test_what_is_pruned_stays_zero_and_a_whole_tensor_may_go() -> None:
 def test_fewer_points_than_weights_will_do() -> None:
     module = Module(SPECS["sdf"], "cpu")
     few = next(iter(batch("sdf").parts(5)))
-    rounding = Rounding(Curvature(squared, 1e-12), 1e-6)
-    round_weights(module, few, rounding, torch.Generator().manual_seed(0))
+    quantization, objective = Quantization(1e-6), Squared(LossConfig())
+    round_weights(module, few, quantization, objective, torch.Generator().manual_seed(0))
     assert torch.isfinite(module.weights).all()
 
 
 def test_weights_that_are_not_finite_are_an_error() -> None:
     module = Module(SPECS["sdf"], "cpu")
     module.weights.data[3] = float("nan")
-    rounding = Rounding(CURVATURES["sdf"], 1e-3)
+    quantization, objective = Quantization(1e-3), OBJECTIVE["sdf"]
     with pytest.raises(FitError, match="expected finite derivatives, found NaN"):
-        round_weights(module, batch("sdf"), rounding, torch.Generator().manual_seed(0))
+        round_weights(
+            module, batch("sdf"), quantization, objective, torch.Generator().manual_seed(0)
+        )
 
 
-def test_blocks_make_up_for_each_other(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_blocks_make_up_for_each_other() -> None:
     part, off = batch("sdf"), []
     for size, shares in ((40, (0.0,)), (40, (0.0, 0.1, 0.3, 1.0))):
-        monkeypatch.setattr("nispcodec.train.quantize.WHOLE", 0)
-        monkeypatch.setattr("nispcodec.train.quantize.BLOCK", size)
-        monkeypatch.setattr("nispcodec.train.quantize.SHARES", shares)
-        before, after = rounded("sdf", 1e-7)
+        config = QuantizeConfig(whole=0, block=size, newton_shares=shares)
+        before, after = rounded("sdf", 1e-7, config)
         off.append(float((outputs(before, part) - outputs(after, part)).abs().mean()))
     assert off[1] < 0.9 * off[0]
 
@@ -205,12 +218,12 @@ def test_a_snapped_step_is_near_and_stays(step: float) -> None:
     assert math.frexp(near)[0] * 16 % 1 == 0
 
 
-def fitted(price: float) -> Network:
-    task = replace(sdf_task(100), rounding=Rounding(CURVATURES["sdf"], price))
+def fitted(lambda_: float) -> Network:
+    task = replace(sdf_task(100), quantization=Quantization(lambda_))
     return train(task, 0, "cpu", threading.Lock(), silent)
 
 
-def test_a_higher_price_buys_fewer_bits() -> None:
+def test_a_higher_lambda_buys_fewer_bits() -> None:
     bits = [
         float(np.log2(network.tensors["weight.1"].std() / network.steps["weight.1"]))
         for network in (fitted(1e-3), fitted(1e-5))
@@ -228,26 +241,26 @@ steps_of_rows = st.lists(st.floats(1e-6, 1e3), min_size=1, max_size=40)
 @given(steps_of_rows, st.sampled_from([1.0, 30.0]))
 def test_rows_share_a_step_but_for_octaves(steps: list[float], scale: float) -> None:
     wanted, counts = np.array(steps), np.full(len(steps), 10.0)
-    step, octaves = shared_step(wanted, counts, scale, 7)
+    step, row_shifts = shared_step(wanted, counts, scale, 7, 1 / 16)
     assert math.frexp(step / scale)[0] * 16 == pytest.approx(
         round(math.frexp(step / scale)[0] * 16)
     )
-    assert set(octaves.tolist()) <= set(range(8))
-    assert octaves.max() < 1 or len(steps) > 1
+    assert set(row_shifts.tolist()) <= set(range(8))
+    assert row_shifts.max() < 1 or len(steps) > 1
 
 
 def test_rows_that_matter_less_are_rounded_more_coarsely() -> None:
     wanted = 2.0 ** np.array([-9, -7, -6, -8])
-    step, octaves = shared_step(wanted, np.full(4, 100.0), 1.0, 7)
-    assert (step * 2**octaves).tolist() == wanted.tolist()
+    step, row_shifts = shared_step(wanted, np.full(4, 100.0), 1.0, 7, 1 / 16)
+    assert (step * 2**row_shifts).tolist() == wanted.tolist()
 
 
 def test_octaves_that_save_less_than_they_take_are_left_out() -> None:
-    _, octaves = shared_step(np.array([1.0, 1.5, 1.0, 1.3]), np.full(4, 3.0), 1.0, 7)
-    assert not octaves.any()
+    _, row_shifts = shared_step(np.array([1.0, 1.5, 1.0, 1.3]), np.full(4, 3.0), 1.0, 7, 1 / 16)
+    assert not row_shifts.any()
 
 
 def test_rows_without_weights_have_no_say() -> None:
     wanted, counts = np.array([1e-6, 0.5, 0.5, 1e-6]), np.array([0.0, 9.0, 9.0, 0.0])
-    assert shared_step(wanted, counts, 1.0, 7)[0] == 0.5
-    assert shared_step(wanted, np.zeros(4), 1.0, 7)[0] == 1.0
+    assert shared_step(wanted, counts, 1.0, 7, 1 / 16)[0] == 0.5
+    assert shared_step(wanted, np.zeros(4), 1.0, 7, 1 / 16)[0] == 1.0

@@ -7,19 +7,15 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from nispcodec.core.network import NetworkSpec
+from nispcodec.train.config import SizingConfig
 from nispcodec.train.sizing import (
-    DEEP,
-    FINE,
-    LAYERS,
-    MAX_WIDTH,
-    MIN_WIDTH,
-    MODELS,
     bytes_of,
     even_width,
     hidden_layers,
     scale_for_bytes,
 )
 
+CONFIG = SizingConfig()
 ERRORS = {"sdf": 1e-3, "chart": 0.05, "uv": 3e-3}
 errors = st.floats(1e-6, 1.0)
 scales = st.floats(0.0, 10.0)
@@ -27,8 +23,8 @@ scales = st.floats(0.0, 10.0)
 
 def test_each_network_has_layers_of_one_width() -> None:
     sizes = hidden_layers(ERRORS, 5.0)
-    assert set(sizes) == set(MODELS)
-    assert all(len(hidden) == LAYERS and len(set(hidden)) == 1 for hidden in sizes.values())
+    assert set(sizes) == set(CONFIG.models)
+    assert all(len(hidden) == CONFIG.layers and len(set(hidden)) == 1 for hidden in sizes.values())
     assert hidden_layers({"sdf": 1e-3}, 5.0) == {"sdf": sizes["sdf"]}
 
 
@@ -37,18 +33,18 @@ def test_more_to_learn_or_a_larger_scale_is_never_narrower(
     sdf: float, one: float, other: float, small: float, large: float
 ) -> None:
     one, other, small, large = *sorted((one, other)), *sorted((small, large))
-    for name in MODELS:
+    for name in CONFIG.models:
         narrow = hidden_layers({"sdf": sdf, name: one}, 2.0, small)[name]
         wide = hidden_layers({"sdf": sdf, name: other}, 3.0, large)[name]
-        assert MIN_WIDTH <= narrow[0] <= wide[0] <= MAX_WIDTH
+        assert CONFIG.narrowest <= narrow[0] <= wide[0] <= CONFIG.widest
     least, most = (hidden_layers({"sdf": error}, 2.0, small)["sdf"] for error in (one, other))
     assert (len(least), *least) <= (len(most), *most)
 
 
 def test_fine_detail_takes_deeper_networks() -> None:
     plain = hidden_layers(ERRORS, 5.0)
-    fine = hidden_layers(ERRORS | {"sdf": 1.01 * FINE}, 5.0)
-    assert all(len(hidden) == DEEP for hidden in fine.values())
+    fine = hidden_layers(ERRORS | {"sdf": 1.01 * CONFIG.fine}, 5.0)
+    assert all(len(hidden) == CONFIG.fine_layers for hidden in fine.values())
     assert fine["sdf"] > plain["sdf"]
 
 

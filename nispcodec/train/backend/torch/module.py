@@ -17,9 +17,6 @@ from nispcodec.train.backend.torch.stack import Matrices
 from nispcodec.train.chart_affine import affine_maps
 from nispcodec.train.prune import Mask
 
-EMBEDDED = math.sqrt(3)
-"""Bound of the first embeddings: their variance is 1."""
-
 
 class Module:
     """A network under training.
@@ -27,20 +24,20 @@ class Module:
     All its numbers are one vector, in file order, so that rounding, clipping and charging are one
     operation each. Sine layers hold w0 W and w0 b, which saves a pass over the activations. Once
     rounded (`nispcodec.train.quantize`), each tensor is a multiple of its step in `steps`. Once
-    pruned, `kept` is 1 or 0 for each number, and what is pruned is 0 after every `hold`. `band`
-    scales the frequencies that it starts with; `first` is what was drawn.
+    pruned, `kept` is 1 or 0 for each number, and what is pruned is 0 after every `apply_mask`.
+    `w0_scale` scales the frequencies that it starts with; `first` are the initial weights.
     """
 
     steps: Tensor | None = None
     kept: Tensor | None = None
 
-    def __init__(self, spec: NetworkSpec, device: str, band: float = 1.0) -> None:
+    def __init__(self, spec: NetworkSpec, device: str, w0_scale: float = 1.0) -> None:
         self.spec = spec
         self._shapes = spec.shapes
         self._counts = [math.prod(shape) for shape in self._shapes.values()]
         first = _initial(spec)
-        first["weight.0"] *= band
-        first["bias.0"] *= band
+        first["weight.0"] *= w0_scale
+        first["bias.0"] *= w0_scale
         if spec.encoding == "identity":
             first["weight.0"][:, 3 : 3 + len(spec.signed_axes)] = 0
         self.mirrored = torch.tensor(spec.mirrored, device=device)
@@ -58,7 +55,7 @@ class Module:
     def matrices(self, last: float) -> tuple[Matrices, Matrices]:
         """What an optimizer sees together, and its rate relative to the schedule's.
 
-        Of each layer [W | b], and of the tables a row for each chart: where its numbers are in the
+        For each layer [W | b], for the tables a row for each chart: where its numbers are in the
         vector. First those from one hidden layer to the next, then all others; `last` is the rate
         of the last layer.
         """
@@ -72,12 +69,16 @@ class Module:
         rows = [(torch.cat(tables, dim=1), 1.0)] if tables else []
         return layers[1:-1], [layers[0], layers[-1], *rows]
 
-    def place_frames(self, points: Tensor, charts: Tensor, uvs: Tensor) -> None:
+    def place_chart_affine(self, points: Tensor, charts: Tensor, uvs: Tensor, ridge: float) -> None:
         """Start from the affine maps nearest to the UVs (n, 2) of points (n, 3) of charts (n,)."""
         seen = [part.cpu().numpy() for part in (self._coordinates(points), charts, uvs)]
         coordinates, numbers, targets = seen
         maps = affine_maps(
-            coordinates.astype(np.float64), numbers, targets.astype(np.float64), self.spec.charts
+            coordinates.astype(np.float64),
+            numbers,
+            targets.astype(np.float64),
+            self.spec.charts,
+            ridge,
         )
         parts = self._parts(self.weights.detach())
         for name, values in zip(("slopes", "offsets"), maps, strict=True):
@@ -100,7 +101,7 @@ class Module:
             hidden = activation(functional.linear(hidden, parts[f"weight.{i}"], parts[f"bias.{i}"]))
         output = functional.linear(hidden, parts[f"weight.{last}"], parts[f"bias.{last}"])
         if self.spec.conditioning == "chart_affine":
-            output = output + self._framed(points, rows)
+            output = output + self._affine(points, rows)
         return _OUTPUTS[self.spec.output](output)
 
     def prune(self, mask: Mask) -> None:
@@ -109,11 +110,11 @@ class Module:
         for name, part in self._parts(self.kept).items():
             if name in mask:
                 part.copy_(torch.from_numpy(mask[name]))
-        self.hold()
+        self.apply_mask()
 
     @torch.no_grad()
-    def hold(self) -> None:
-        """Make what is pruned 0 again, after a move."""
+    def apply_mask(self) -> None:
+        """Make what is pruned 0 again, after a step."""
         if self.kept is not None:
             self.weights.mul_(self.kept)
 
@@ -180,7 +181,7 @@ class Module:
             return torch.zeros(0)
         return functional.embedding(charts, torch.cat(tables, dim=1))
 
-    def _framed(self, points: Tensor, rows: Tensor) -> Tensor:
+    def _affine(self, points: Tensor, rows: Tensor) -> Tensor:
         """The affine map of each point's chart (n, outputs)."""
         outputs = self.spec.outputs
         slopes = rows[:, self.spec.embedding : -outputs].view(len(points), outputs, -1)
@@ -204,17 +205,18 @@ def _fourier(points: Tensor, levels: int) -> Tensor:
 
 
 def _initial(spec: NetworkSpec) -> dict[str, Tensor]:
-    """Draws (`nispcodec.core.initial_weights`), each tensor within its bound."""
+    """Initial weights (`nispcodec.core.initial_weights`), each tensor within its bound."""
     bounds = _bounds(spec)
     return {
-        name: torch.from_numpy(drawn / (1 << BITS) * bounds[name]).float()
-        for name, drawn in spec.initial_integers(spec.shapes).items()
+        name: torch.from_numpy(initial / (1 << BITS) * bounds[name]).float()
+        for name, initial in spec.initial_integers(spec.shapes).items()
     }
 
 
 def _bounds(spec: NetworkSpec) -> dict[str, float]:
     """How large the first numbers of every tensor are at most."""
-    bounds = {"embedding": EMBEDDED, "slopes": 0.0, "offsets": 0.0}
+    # Embeddings of variance 1.
+    bounds = {"embedding": math.sqrt(3), "slopes": 0.0, "offsets": 0.0}
     for layer, fan_in in enumerate([spec.inputs, *spec.hidden]):
         bound = _weight_bound(spec, layer, fan_in)
         bias = bound if layer < len(spec.hidden) else 0.0

@@ -1,4 +1,4 @@
-"""What moves a network's weights by their gradient: Muon and SOAP, or Adam as the paper has it."""
+"""Optimizers: Muon and SOAP together, or Adam as the paper has it."""
 
 from __future__ import annotations
 
@@ -10,34 +10,35 @@ from torch import Tensor
 from nispcodec.train.backend.torch.module import Module
 from nispcodec.train.backend.torch.muon import Muon
 from nispcodec.train.backend.torch.soap import Soap
+from nispcodec.train.config import TrainConfig
 from nispcodec.train.task import Schedule
 
-Move = Callable[[float], None]
+Step = Callable[[float], None]
 """To be called after `backward`, with the rate."""
 
 
-def optimizer(module: Module, schedule: Schedule) -> Move:
+def optimizer(module: Module, schedule: Schedule, config: TrainConfig) -> Step:
     """A new one, which remembers nothing yet."""
     if schedule.optimizer == "adam":
         return _adam(module.weights)
-    hidden, others = module.matrices(schedule.last)
-    soap = Soap(module.weights, others)
+    hidden, others = module.matrices(schedule.last_layer_lr_scale)
+    soap = Soap(module.weights, others, config.soap)
     if not hidden:
         return soap.step
-    muon = Muon(module.weights, hidden, schedule.memory)
+    muon = Muon(module.weights, hidden, schedule.momentum_share, config.muon)
 
-    def move(rate: float) -> None:
+    def step(rate: float) -> None:
         soap.step(rate)
         muon.step(rate)
 
-    return move
+    return step
 
 
-def _adam(weights: Tensor) -> Move:
+def _adam(weights: Tensor) -> Step:
     adam = torch.optim.Adam([weights])
 
-    def move(rate: float) -> None:
+    def step(rate: float) -> None:
         adam.param_groups[0]["lr"] = rate
         adam.step()
 
-    return move
+    return step

@@ -12,15 +12,12 @@ import torch
 from torch import Tensor
 
 from nispcodec.train.backend.torch.stack import Matrices, Stack
-
-BETA = 0.95
-EPSILON = 1e-8
-REFRESH_EVERY = 10
+from nispcodec.train.config import SoapConfig
 
 
 @dataclass
 class _State:
-    """Of the padded stack: moments and the two sides' covariances and eigenbases."""
+    """State of the padded stack: moments and the two sides' covariances and eigenbases."""
 
     mean: Tensor
     square: Tensor
@@ -35,20 +32,23 @@ class Soap:
 
     state: _State | None = None
 
-    def __init__(self, weights: Tensor, matrices: Matrices) -> None:
+    def __init__(
+        self, weights: Tensor, matrices: Matrices, config: SoapConfig = SoapConfig()
+    ) -> None:
         self.stack = Stack(weights, matrices)
-        self.steps = 0
+        self.steps, self.config = 0, config
 
     @torch.no_grad()
     def step(self, scale: float) -> None:
-        """Move every matrix by its rate times `scale`; the first call only measures."""
+        """One step of every matrix, by its rate times `scale`; the first call only measures."""
         gradient = self.stack.gradient()
         if self.state is None:
             self.state = _fresh_state(gradient)
             return
         self.steps += 1
-        self.stack.move(_direction(gradient, self.state, self.steps), scale)
-        if self.steps % REFRESH_EVERY == 0:
+        direction = _direction(gradient, self.state, self.steps, self.config)
+        self.stack.subtract(direction, scale)
+        if self.steps % self.config.refresh_every == 0:
             _refresh(self.state)
 
 
@@ -64,16 +64,17 @@ def _fresh_state(gradient: Tensor) -> _State:
     )
 
 
-def _direction(gradient: Tensor, state: _State, steps: int) -> Tensor:
+def _direction(gradient: Tensor, state: _State, steps: int, config: SoapConfig) -> Tensor:
     """Adam's step in the rotated basis, rotated back; updates moments and covariances."""
+    beta, epsilon = config.beta, config.epsilon
     rotated = state.left_basis.mT @ gradient @ state.right_basis
-    state.mean.lerp_(gradient, 1 - BETA)
-    state.square.lerp_(rotated.square_(), 1 - BETA)
-    state.left.lerp_(gradient @ gradient.mT, 1 - BETA)
-    state.right.lerp_(gradient.mT @ gradient, 1 - BETA)
-    correction = 1 - BETA**steps
+    state.mean.lerp_(gradient, 1 - beta)
+    state.square.lerp_(rotated.square_(), 1 - beta)
+    state.left.lerp_(gradient @ gradient.mT, 1 - beta)
+    state.right.lerp_(gradient.mT @ gradient, 1 - beta)
+    correction = 1 - beta**steps
     mean = state.left_basis.mT @ state.mean @ state.right_basis
-    scaled = (mean / correction) / ((state.square / correction).sqrt_().add_(EPSILON))
+    scaled = (mean / correction) / ((state.square / correction).sqrt_().add_(epsilon))
     return state.left_basis @ scaled @ state.right_basis.mT
 
 

@@ -1,4 +1,4 @@
-"""Matrices that are parts of one vector, as one stack: all of them are moved in one operation.
+"""Matrices that are parts of one vector, as one stack: all of them take a step in one operation.
 
 They are so small that the number of operations is what takes the time.
 """
@@ -36,7 +36,7 @@ class Stack:
         self._gradient.view(-1).index_copy_(0, self._spots, found)
         return self._gradient
 
-    def move(self, directions: Tensor, scale: float) -> None:
+    def subtract(self, directions: Tensor, scale: float) -> None:
         """Subtract from every matrix its direction, times its rate and `scale`."""
-        moves = (directions * self._rates).view(-1).index_select(0, self._spots)
-        self._weights.index_add_(0, self._places, moves, alpha=-scale)
+        steps = (directions * self._rates).view(-1).index_select(0, self._spots)
+        self._weights.index_add_(0, self._places, steps, alpha=-scale)

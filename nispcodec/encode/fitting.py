@@ -1,0 +1,70 @@
+"""From an analyzed and sampled asset to its networks, on this machine."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Mapping
+
+from nispcodec.core.document import Document
+from nispcodec.core.network import Network
+from nispcodec.core.progress import Listener
+from nispcodec.dataset.recipes import TrainingSets
+from nispcodec.encode.config import EncodeConfig
+from nispcodec.encode.targets import (
+    FitContext,
+    fit_to_error,
+    fit_to_size,
+    fit_with_preset,
+    pruned,
+)
+from nispcodec.geometry.analysis import Analysis
+from nispcodec.geometry.solid import area
+from nispcodec.train.config import TrainConfig
+from nispcodec.train.task import Task
+from nispcodec.train.tasks import AssetProblem, paper_tasks
+from nispcodec.train.workers import fit_networks, resolve_device
+
+
+def fit(
+    analysis: Analysis,
+    sets: TrainingSets,
+    config: EncodeConfig,
+    training: TrainConfig,
+    document: Callable[[Mapping[str, Network]], Document],
+    progress: Listener,
+) -> Mapping[str, Network]:
+    """The networks: the published ones, or sine networks as large as the preset or target asks.
+
+    Raises FitError when a network does not converge.
+    """
+    device, threads = resolve_device(config.device), config.threads or os.cpu_count() or 1
+
+    def run(tasks: list[Task], listen: Listener) -> dict[str, Network]:
+        return fit_networks(tasks, config.seed, device, threads, listen)
+
+    problem = asset_problem(analysis, sets, training)
+    if config.preset == "paper":
+        tasks = paper_tasks(problem.charts, sets, training)
+        needed = [task for task in tasks if task.name in problem.networks]
+        return run(pruned(needed, config.prunings()), progress)
+    budget = training.budgets[config.preset]
+    context = FitContext(problem, budget, run, progress, config.prunings())
+    if config.target_error is not None:
+        return fit_to_error(context, config.target_error)
+    if config.target_size is not None:
+        return fit_to_size(context, config.target_size, document)
+    return fit_with_preset(context)
+
+
+def asset_problem(analysis: Analysis, sets: TrainingSets, training: TrainConfig) -> AssetProblem:
+    """What the networks of an asset are asked for."""
+    table, symmetry = analysis.table, analysis.symmetry
+    return AssetProblem(
+        sets,
+        charts=len(table),
+        has_uv=bool(table.has_uv.any()),
+        area=float(area(analysis.solid.pieces).sum()),
+        sdf_mirror=symmetry.sdf,
+        uv_mirror=symmetry.uv,
+        config=training,
+    )

@@ -1,0 +1,133 @@
+"""All that is known of an asset before anything is learned: its frame, inside, charts, symmetry."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from nispcodec.core.arrays import Float64Array
+from nispcodec.core.asset import TexturedMesh
+from nispcodec.core.document import ChartTable, Frame
+from nispcodec.geometry.chart_cuts import split_self_seams
+from nispcodec.geometry.chart_merging import Cover, merge_charts
+from nispcodec.geometry.charts import Charts, split_charts
+from nispcodec.geometry.config import GeometryConfig, MergingConfig, OpeningsConfig, SymmetryConfig
+from nispcodec.geometry.distance import DistanceField
+from nispcodec.geometry.labeling import Labeling, chart_table
+from nispcodec.geometry.openings import crossings
+from nispcodec.geometry.solid import Solid, build_solid
+from nispcodec.geometry.surface_points import laplace_offsets, raised, solid_surface
+from nispcodec.geometry.symmetry import Symmetry, find_symmetry, folded, mirrored_charts
+
+CUBE = 1.05
+"""Half the side of the cube (normalized frame) that anybody asks about."""
+
+
+@dataclass(frozen=True)
+class Analysis:
+    """One asset, analyzed.
+
+    frame            from the normalized frame to the world
+    patches          the charts of the mesh, cut where they meet themselves
+    label            distance, chart (after merging) and UV of any points
+    symmetry         about which planes it is symmetric
+    closing_points   (k, 3) on surfaces that close openings; none where there are no openings
+    """
+
+    mesh: TexturedMesh
+    frame: Frame
+    patches: Charts
+    label: Labeling
+    symmetry: Symmetry
+    closing_points: Float64Array
+    config: GeometryConfig
+
+    @property
+    def field(self) -> DistanceField:
+        """The signed distance."""
+        return self.label.field
+
+    @property
+    def solid(self) -> Solid:
+        """The part of the mesh that a signed distance can hold."""
+        return self.label.field.solid
+
+    @property
+    def table(self) -> ChartTable:
+        """The charts as the file has them, and the map of the UVs."""
+        return self.label.table
+
+
+def analyze(
+    mesh: TexturedMesh, random: np.random.Generator, config: GeometryConfig = GeometryConfig()
+) -> Analysis:
+    """Analyze an asset. Raises MeshError when nothing of it can be held by a signed distance."""
+    frame = normalizing_frame(mesh)
+    corners = frame.to_normalized(mesh.corners)
+    field = DistanceField(build_solid(corners, config.solid), config.solid.sheet_lift)
+    patches = split_charts(mesh)
+    if config.merging:
+        patches = split_self_seams(mesh, patches)
+    table = chart_table(mesh, patches, config.filled_atlas)
+    label = Labeling(field, corners, mesh.corner_uvs, patches, table)
+    symmetry = find_symmetry(label, config.symmetry)
+    closing = np.zeros((0, 3))
+    if config.merging:
+        charts = _merged(label, symmetry, random, config.merging, config.symmetry)
+        table = chart_table(mesh, charts, config.filled_atlas)
+        label = replace(label, charts=charts, table=table)
+        closing = _closing_points(field, random, config.openings)
+    if len(closing):
+        label = replace(label, table=_with_openings(table))
+    return Analysis(mesh, frame, patches, label, symmetry, closing, config)
+
+
+def normalizing_frame(mesh: TexturedMesh) -> Frame:
+    """Bounding-box center to 0, farthest vertex to radius 1; only vertices of faces count."""
+    used = mesh.positions[np.unique(mesh.faces)]
+    center = (used.min(axis=0) + used.max(axis=0)) / 2
+    radius = float(np.linalg.norm(used - center, axis=1).max())
+    return Frame((float(center[0]), float(center[1]), float(center[2])), radius)
+
+
+def _merged(
+    label: Labeling,
+    symmetry: Symmetry,
+    random: np.random.Generator,
+    merging: MergingConfig,
+    mirroring: SymmetryConfig,
+) -> Charts:
+    """Merge charts, told by random points and one point of each piece of small charts."""
+    solid, charts = label.field.solid, label.charts
+    points, piece = solid_surface(random, solid, merging.points)
+    chart = charts.face_charts[solid.parents]
+    rare = np.bincount(chart[piece], minlength=len(charts))[chart] < merging.rare
+    centers = raised(random, solid, solid.pieces[rare].mean(axis=1), np.flatnonzero(rare))
+    points = np.concatenate([points, centers])
+    surface = label(points, signed=False)
+    seen, uvs = folded(points, symmetry.uv), surface.uv.astype(np.float64)
+    cover = Cover(points, surface.chart, seen, uvs)
+    alike = mirrored_charts(label, surface, symmetry.uv, mirroring)
+    return merge_charts(charts, cover, alike, merging)
+
+
+def _closing_points(
+    field: DistanceField, random: np.random.Generator, config: OpeningsConfig
+) -> Float64Array:
+    """Points (k, 3) on closing surfaces; none where these are not worth a chart."""
+    surface, _ = solid_surface(random, field.solid, config.probes)
+    probes = laplace_offsets(random, surface, config.probe_spread, CUBE)
+    # As labels have them: the single precision of samples.
+    found = crossings(field, probes.astype(np.float32).astype(np.float64), random, config)
+    return found if len(found) >= config.notable * len(probes) else found[:0]
+
+
+def _with_openings(table: ChartTable) -> ChartTable:
+    """The table with one chart more, that of the openings."""
+    return replace(
+        table,
+        materials=np.append(table.materials, np.int32(0)),
+        has_uv=np.append(table.has_uv, False),
+        openings=True,
+    )

@@ -1,0 +1,135 @@
+"""Every tuned number of the geometry, with its unit and the reason for it.
+
+Lengths are in the normalized frame (radius 1) unless said.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+
+@dataclass(frozen=True)
+class SolidConfig:
+    """What of a mesh is inside, hidden, or an open surface.
+
+    probe_offset      how far off a face one looks to tell which of its sides are inside
+    half_thickness    given to open surfaces: a field that is thinner would not be learned
+    thin_wall         walls thinner than this have no inside to speak of: open surfaces
+    coarse_edge       faces are subdivided until no edge is longer than this ...
+    fine_edge         ... and, where they are partly hidden, than this
+    doubt             a winding number so near to a half beside a face tells no side
+    winding_accuracy  of libigl's fast winding number: half the time of its default of 2; of
+                      200,000 probes around a helmet of 82 bodies one moved across 1/2
+    open_share        a body whose exposed openings have this share of its area is open
+    undecided         an opening is exposed where the winding number is so near to a half ...
+    plugged_gap       ... and the mesh further away than this
+    card_share        a body whose openings have this share of its area is a double-sided sheet
+    closing           a sheet that closes a body has a winding number so near to a whole one
+    sheet_lift        how far in front of an open surface its points are looked for: of two faces
+                      back to back the one on the same side is the closest
+    """
+
+    probe_offset: float = 2e-3
+    half_thickness: float = 4e-3
+    thin_wall: float = 1e-3
+    coarse_edge: float = 0.1
+    fine_edge: float = 0.03
+    doubt: float = 0.05
+    winding_accuracy: float = 1.5
+    open_share: float = 0.25
+    undecided: float = 0.2
+    plugged_gap: float = 0.02
+    card_share: float = 0.7
+    closing: float = 0.25
+    sheet_lift: float = 1e-6
+
+
+@dataclass(frozen=True)
+class SymmetryConfig:
+    """When an asset counts as its own mirror image.
+
+    probes        random points near the surface that are asked
+    jitter        standard deviation of how far they lie off it
+    exact         mean difference of the distance up to which it is symmetric; assets modeled in two
+                  halves stay below 1e-5, a small part on one side only makes 1e-4 to 2e-4 and
+                  must not be lost
+    alike         distances and texture coordinates that differ by less count as the same
+    mostly_sdf    share of probes alike from which on the SDF gets a coordinate more
+    mostly_uv     the same for charts and UVs
+    mirrored      share of a chart's points whose image lies on its mirrored chart: charts may be
+                  cut differently
+    """
+
+    probes: int = 2_000
+    jitter: float = 5e-3
+    exact: float = 3e-5
+    alike: float = 2e-3
+    mostly_sdf: float = 0.95
+    mostly_uv: float = 0.9
+    mirrored: float = 0.5
+
+
+@dataclass(frozen=True)
+class MergingConfig:
+    """Which charts share a label.
+
+    gap           charts some times further apart than this may
+    points        on the surface by which neighbors are told
+    rare          charts with fewer points get one for each of their faces
+    ridge         variance below which a direction decides nothing: that across a flat chart
+    floor         UVs nearer than this to an affine map are as good as on it
+    extra_shares  how many more labels than are needed are tried
+    worth         bits a point that twice the labels have to save
+    sweeps        how often each chart is looked at again
+    many          from so many charts on only the labels that are needed are tried, once
+    """
+
+    gap: float = 0.1
+    points: int = 30_000
+    rare: int = 20
+    ridge: float = 1e-4
+    floor: float = 1e-3
+    extra_shares: tuple[float, ...] = (0.0, 0.125, 0.25, 0.5, 0.75, 1.0)
+    worth: float = 3.0
+    sweeps: int = 10
+    many: int = 2000
+
+
+@dataclass(frozen=True)
+class OpeningsConfig:
+    """Where the signed distance closes openings of the mesh.
+
+    probes        random points near the surface from which closing surfaces are sought
+    probe_spread  mean distance of the probes from the surface
+    notable       share of probes that find one from which on openings get a chart
+    clearance     a closing surface nearer to the mesh closes no opening to speak of
+    stride        share of the way to the surface that a probe steps: it cannot cross it
+    bisections    of the step that crosses a closing surface
+    spreads       rounds in which found points look for others beside them
+    children      points that each missing one is sought by in a round
+    """
+
+    probes: int = 50_000
+    probe_spread: float = 1 / 60
+    notable: float = 5e-4
+    clearance: float = 6e-3
+    stride: float = 0.9
+    bisections: int = 6
+    spreads: int = 12
+    children: int = 2
+
+
+@dataclass(frozen=True)
+class GeometryConfig:
+    """All of them.
+
+    merging       None leaves charts as the mesh has them, and openings without a chart
+    filled_atlas  UVs that fill so much of the unit square in both directions stay as they are: no
+                  map to store
+    """
+
+    solid: SolidConfig = field(default_factory=SolidConfig)
+    symmetry: SymmetryConfig = field(default_factory=SymmetryConfig)
+    merging: MergingConfig | None = field(default_factory=MergingConfig)
+    openings: OpeningsConfig = field(default_factory=OpeningsConfig)
+    filled_atlas: float = 0.95

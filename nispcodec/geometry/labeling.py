@@ -1,0 +1,71 @@
+"""The labels of points: distance, chart and UV at the closest point of the surface."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from nispcodec.core.arrays import Float32Array, Float64Array, Int64Array
+from nispcodec.core.asset import TexturedMesh
+from nispcodec.core.document import ChartTable
+from nispcodec.core.sample_set import SampleSet
+from nispcodec.geometry.charts import Charts
+from nispcodec.geometry.distance import Closest, DistanceField
+from nispcodec.geometry.surface_points import barycentric
+
+
+@dataclass(frozen=True)
+class Labeling:
+    """Labels points by the faces of one mesh, its charts and its chart table.
+
+    corners (m, 3, 3), normalized frame; uvs (m, 3, 2), the asset's
+    """
+
+    field: DistanceField
+    corners: Float64Array
+    uvs: Float64Array
+    charts: Charts
+    table: ChartTable
+
+    def __call__(self, points: Float64Array, signed: bool = True) -> SampleSet:
+        """The labels of points (n, 3), normalized frame (paper, eq. 2).
+
+        Without `signed` all of space counts as outside, which saves most of the time.
+        """
+        closest = self.field.closest(points, signed)
+        face = self.field.solid.parents[closest.piece]
+        return SampleSet(
+            points=points.astype(np.float32),
+            sdf=closest.sdf.astype(np.float32),
+            chart=self.charts.face_charts[face],
+            uv=self._network_uv(closest, face),
+        )
+
+    def _network_uv(self, closest: Closest, face: Int64Array) -> Float32Array:
+        weights = barycentric(self.corners[face], closest.point)
+        uv = np.einsum("nc,ncx->nx", weights, self.uvs[face])
+        scaled = (uv - np.asarray(self.table.uv_offset)) / np.asarray(self.table.uv_scale)
+        has_uv = self.charts.has_uv[self.charts.face_charts[face]]
+        return np.where(has_uv[:, None], scaled, 0.0).astype(np.float32)
+
+
+def chart_table(mesh: TexturedMesh, charts: Charts, filled: float) -> ChartTable:
+    """The chart table, with the affine map that brings the used UVs to [0, 1]^2.
+
+    The identity where they lie within the unit square and fill so much of it in both directions: it
+    takes no bytes.
+    """
+    used = mesh.corner_uvs[mesh.has_uv].reshape(-1, 2)
+    if not len(used):
+        return ChartTable(charts.materials, charts.has_uv)
+    low, high = used.min(axis=0), used.max(axis=0)
+    if low.min() >= 0 and high.max() <= 1 and (high - low).min() >= filled:
+        return ChartTable(charts.materials, charts.has_uv)
+    scale = np.where(high > low, high - low, 1.0)
+    return ChartTable(
+        charts.materials,
+        charts.has_uv,
+        uv_offset=(float(low[0]), float(low[1])),
+        uv_scale=(float(scale[0]), float(scale[1])),
+    )

@@ -1,0 +1,36 @@
+"""Small numbers for encodes that take a second."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from nispcodec.dataset.config import SamplingConfig
+from nispcodec.encode.config import Tuning
+from nispcodec.train.config import PaperConfig, TrainConfig, TrainingBudget
+
+COUNTS = ("near", "tight", "cube", "wide", "near_surface", "texture", "held_out", "paper", "thin")
+
+
+def small(
+    samples: int,
+    seconds: float,
+    minings: int,
+    mine_every: int,
+    probe_steps: int,
+    lambda_: float = 0,
+) -> Tuning:
+    """Few samples of each kind, so many seconds for every preset; lambda of all networks."""
+    default = TrainConfig()
+    budget = TrainingBudget(seconds, 0.6, minings, mine_every)
+    networks = {
+        name: replace(each, lambda_=lambda_ or each.lambda_)
+        for name, each in default.networks.items()
+    }
+    training = TrainConfig(
+        budgets=dict.fromkeys(default.budgets, budget),
+        networks=networks,
+        probe_steps=probe_steps,
+        paper=PaperConfig(steps=60),
+    )
+    counts = {f"{name}_count": samples for name in COUNTS}
+    return Tuning(sampling=SamplingConfig(**counts), training=training)
