@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from types import ModuleType
 from typing import Any
 
 import numpy as np
@@ -13,9 +12,10 @@ from hypothesis.extra import numpy as hnp
 
 from nispcodec.format.codings import bits, coo, csc, csr, dense, dia, entropy, frequency_model, rans
 from nispcodec.format.codings.reader import Reader, varint
+from nispcodec.format.codings.registry import REGISTRY, Codec
 from nispcodec.format.constants import MAX_CELLS, MAX_SYMBOL
 
-OWN = {"dense": dense, "coo": coo, "csc": csc, "csr": csr, "dia": dia}
+OWN = {coding.name: coding.codec for coding in REGISTRY if coding.codec}
 FLOATS = st.floats(width=32, allow_nan=False, allow_infinity=False).map(lambda x: x + 0.0)
 HALVES = st.floats(width=16, allow_nan=False, allow_infinity=False).map(lambda x: x + 0.0)
 SYMBOLS = st.integers(-MAX_SYMBOL, MAX_SYMBOL)
@@ -30,7 +30,7 @@ def matrices() -> st.SearchStrategy[np.ndarray[Any, Any]]:
     return st.one_of(floats, symbols)
 
 
-def through(coding: ModuleType, matrix: np.ndarray[Any, Any]) -> np.ndarray[Any, Any]:
+def through(coding: Codec, matrix: np.ndarray[Any, Any]) -> np.ndarray[Any, Any]:
     """The matrix encoded and decoded, with nothing left to read."""
     reader = Reader("NETS", coding.encode(matrix))
     decoded = coding.decode(reader, matrix.shape, matrix.dtype.kind == "i")

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from nispcodec.core.errors import FormatError
 from nispcodec.format import pack, unpack
-from nispcodec.format.constants import CODINGS
+from nispcodec.format.codings.registry import CODINGS
 from nispcodec.format.container import content, read_container
 from tests.conformance.builder import Row, change, container
 from tests.format.documents import full, tiny

@@ -13,7 +13,7 @@ from nispcodec.core.document import ChartTable, Document, Frame
 from nispcodec.core.errors import FormatError
 from nispcodec.core.network import NetworkSpec
 from nispcodec.format import inspect, metadata, pack, unpack
-from nispcodec.format.constants import CODINGS
+from nispcodec.format.codings.registry import CODINGS
 from tests.format.documents import assert_same, documents, full, network, quantized, tiny
 from tests.format.test_measures import ENCODERS
 
