@@ -9,13 +9,11 @@ import numpy as np
 
 from nispcodec.bake.tangents import Frames
 from nispcodec.core.arrays import Float32Array, Float64Array, Int32Array
-from nispcodec.core.asset import SLOTS, Material
+from nispcodec.core.asset import Material
+from nispcodec.core.slots import BY_NAME, SLOTS
 from nispcodec.core.texture import decode_image, linear_to_srgb, sample_texture, srgb_to_linear
 from nispcodec.model import NispModel
 
-# What a material shows without a texture: glTF's factors times white; a flat normal.
-BLANK = {"normal": (0.5, 0.5, 1.0, 1.0)}
-WHITE = (1.0, 1.0, 1.0, 1.0)
 # How far to go, in radii, to see which way a UV grows.
 STEP = 2e-3
 
@@ -44,7 +42,7 @@ def _texels(model: NispModel, slot: str, charts: Int32Array, uvs: Float32Array) 
     document = model.document
     has_uv, owners = document.charts.has_uv[charts], document.charts.materials[charts]
     texels = np.empty((len(charts), 3), np.float32)
-    texels[:] = BLANK.get(slot, WHITE)[:3]
+    texels[:] = BY_NAME[slot].blank[:3]
     for number in np.unique(owners).tolist():
         material = document.materials[number]
         used = material.maps.get(slot)

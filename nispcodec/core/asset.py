@@ -14,11 +14,9 @@ import numpy as np
 from nispcodec.core.arrays import AnyArray, BoolArray, Float64Array, Int32Array
 from nispcodec.core.errors import MeshError
 
-SLOTS = ("base_color", "normal", "metallic_roughness", "occlusion", "emissive")
 WRAPS = ("repeat", "clamp", "mirror")
 FILTERS = ("linear", "nearest")
 ALPHA_MODES = ("opaque", "mask", "blend")
-SRGB_SLOTS = frozenset({"base_color", "emissive"})
 MIME_TYPES = ("image/png", "image/jpeg", "image/webp", "image/avif")
 
 

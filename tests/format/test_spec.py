@@ -8,7 +8,7 @@ from collections import defaultdict
 import numpy as np
 import pytest
 
-from nispcodec.core import asset, network
+from nispcodec.core import asset, network, slots
 from nispcodec.core.texture import sample_texture
 from nispcodec.format import constants, inspect, pack, steps, unpack
 from nispcodec.format.codings import frequency_model, registry
@@ -21,7 +21,12 @@ from tests.format.documents import full
 from tests.format.golden import slab
 from tests.tiny import random_network
 
-NAMES = vars(network) | vars(asset) | vars(constants) | {"CODINGS": registry.CODINGS}
+NAMES = (
+    vars(network)
+    | vars(asset)
+    | vars(constants)
+    | {"CODINGS": registry.CODINGS, "SLOTS": slots.SLOTS}
+)
 DECODER = spec.decoder()
 
 
