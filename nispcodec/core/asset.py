@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from nispcodec.core.arrays import AnyArray, BoolArray, Float64Array, Int32Array
+from nispcodec.core.arrays import AnyArray, BoolArray, Float64Array, Int32Array, IntArray
 from nispcodec.core.errors import MeshError
 
 WRAPS = ("repeat", "clamp", "mirror")
@@ -93,6 +93,18 @@ class TexturedMesh:
         _expect_range("faces", self.faces, 0, len(self.positions))
         _expect_range("uv_faces", self.uv_faces, -1, len(self.uvs))
         _expect_range("face_materials", self.face_materials, 0, len(self.materials))
+
+    @staticmethod
+    def geometry_only(positions: Float64Array, faces: IntArray, name: str) -> TexturedMesh:
+        """A mesh of positions (n, 3) and faces (m, 3) without UVs, of one material."""
+        return TexturedMesh(
+            positions=positions,
+            faces=faces.astype(np.int32),
+            uvs=np.zeros((0, 2)),
+            uv_faces=np.full(faces.shape, -1, dtype=np.int32),
+            face_materials=np.zeros(len(faces), dtype=np.int32),
+            name=name,
+        )
 
     @property
     def corners(self) -> Float64Array:

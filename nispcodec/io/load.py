@@ -12,8 +12,9 @@ from nispcodec.io.cleanup import clean
 from nispcodec.io.folder import Folder
 from nispcodec.io.read.gltf import read_gltf
 from nispcodec.io.read.obj import read_obj
-from nispcodec.io.read.plain import read_off, read_stl
+from nispcodec.io.read.off import read_off
 from nispcodec.io.read.ply import read_ply
+from nispcodec.io.read.stl import read_stl
 
 # A reader takes the file's bytes, its name for messages, and the folder that it may refer to.
 Reader = Callable[[bytes, str, Folder], TexturedMesh]
