@@ -30,13 +30,11 @@ class Sampler:
     """Draws and labels points around one analyzed asset; all in the normalized frame."""
 
     def __init__(
-        self,
-        analysis: Analysis,
-        random: np.random.Generator,
-        config: SamplingConfig = SamplingConfig(),
+        self, analysis: Analysis, seed: int = 0, config: SamplingConfig = SamplingConfig()
     ) -> None:
         self.analysis, self.config = analysis, config
-        self._random, self._label = random, analysis.label
+        # Other numbers than the analysis has: what it asks at random changes no sample.
+        self._random, self._label = np.random.default_rng([seed, 1]), analysis.label
 
     def near_surface(self, count: int, spread: float, signed: bool = True) -> SampleSet:
         """About `count` samples whose |SDF| has the mean `spread`: `laplace_offsets`.

@@ -60,9 +60,13 @@ class Analysis:
 
 
 def analyze(
-    mesh: TexturedMesh, random: np.random.Generator, config: GeometryConfig = GeometryConfig()
+    mesh: TexturedMesh, seed: int = 0, config: GeometryConfig = GeometryConfig()
 ) -> Analysis:
-    """Analyze an asset. Raises MeshError when nothing of it can be held by a signed distance."""
+    """Analyze an asset: the same mesh and seed, the same analysis.
+
+    Raises MeshError when nothing of it can be held by a signed distance.
+    """
+    random = np.random.default_rng([seed, 0])
     frame = normalizing_frame(mesh)
     corners = frame.to_normalized(mesh.corners)
     field = DistanceField(build_solid(corners, config.solid), config.solid.sheet_lift)
