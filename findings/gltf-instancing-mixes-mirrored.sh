@@ -9,7 +9,7 @@
 # Output seen: source: 8 nodes, 4 mirrored; optimize: one batch of 8, signs + - + - + - + -; gltfpack -mi: the same;
 #             in three.js one InstancedMesh whose own determinant is +1. gltf-validator: no error, no warning
 # One would guess: an optimizer keeps the picture; mirrored nodes are kept apart as glTF's winding rule asks.
-# Who is hurt: chairs, wheels, windows, leaves placed by mirroring: half of them inside out in the browser, right in the editor.
+# Who is hurt: chairs, wheels, windows, leaves placed by mirroring: half of them inside out in the browser.
 # Instead:    optimize --instance false where any node has a negative determinant, or split by sign before.
 set -euo pipefail
 work=$(mktemp -d)
