@@ -4,12 +4,12 @@
 # Versions:   point-cloud-utils 0.34.0, numpy 2.4.6
 # Behaviour:  the mesh is rebuilt around an octree of `resolution` leaves, a cell or two outside of the input, also where
 #             the input is closed and needed nothing. The offset is one-sided, so it does not average out: 2 % of the
-#             radius at the default of 20,000, 1 % at 50,000. The docstring calls resolution a number of output faces.
+#             radius at the default of 20,000. The docstring calls resolution a number of output faces.
 # Output seen: unit sphere of 1,472 triangles, closed: default: 80,000 faces, volume x 1.06, radius 1.008 to 1.021; 5,000:
-#             volume x 1.13; 50,000: volume x 1.03, 316,000 faces
+#             volume x 1.13, radius 1.025 to 1.042
 # One would guess: a repair leaves a sound mesh alone, or moves it by less than a cell either way.
 # Who is hurt: training sets of signed distances, for which meshes are commonly made watertight first: every distance is
-#             off by 0.01 to 0.02 of the radius, ten times what a network of a few kilobytes errs.
+#             off by 0.008 to 0.02 of the radius, ten times what a network of a few kilobytes errs.
 # Instead:    check that the mesh is closed and leave it; else sign by winding number; or move points back to the input.
 set -euo pipefail
 work=$(mktemp -d)
@@ -41,12 +41,12 @@ def volume(points, faces):
 points, faces = sphere()
 print(f"source: {len(faces)} faces, volume {volume(points, faces):.3f}")
 ratio = {}
-for resolution in (5000, 20000, 50000):
+for resolution in (5000, 20000):
     repaired, tris = pcu.make_mesh_watertight(points, faces, resolution, seed=1)
     radii = np.linalg.norm(repaired, axis=1)
     ratio[resolution] = volume(repaired, tris) / volume(points, faces)
     print(f"resolution {resolution}: {len(tris)} faces, volume x {ratio[resolution]:.3f}, radius {radii.min():.3f} to {radii.max():.3f}")
     assert (np.median(radii) > 1.005), "vertices lie on the input now"
-assert ratio[5000] > 1.08 and ratio[20000] > 1.04 and ratio[50000] > 1.02, "no longer inflated"
+assert ratio[5000] > 1.08 and ratio[20000] > 1.04, "no longer inflated"
 print("as described")
 EOF
