@@ -2,7 +2,7 @@
 # Draco moves UVs of exactly 1 beyond 1, and gltf-transform's quantize then leaves them alone
 #
 # Versions:   npm @gltf-transform/core, extensions, functions 4.5.1, draco3dgltf 1.5.7
-# Behaviour:  Draco quantizes u and v with one step, the larger of their two ranges divided by 2^bits - 1, from each one's
+# Behavior:  Draco quantizes u and v with one step, the larger of their two ranges divided by 2^bits - 1, from each one's
 #             minimum. Unless both ranges are equal, the maximum of the shorter does not fall on a step and may be
 #             rounded up past 1. gltf-transform's quantize() and meshopt() skip UV sets with any value outside [0, 1]
 #             (a warning in the log), so after Draco the whole set stays 32-bit floats.

@@ -2,7 +2,7 @@
 # gltf-transform optimize and gltfpack -mi put mirrored and plain parts into one instanced batch; three.js cannot draw both
 #
 # Versions:   npm @gltf-transform/cli 4.5.1, gltfpack 1.3.0, three 0.187.0
-# Behaviour:  `optimize` turns a mesh used by five or more nodes into EXT_mesh_gpu_instancing by default, gltfpack does with
+# Behavior:  `optimize` turns a mesh used by five or more nodes into EXT_mesh_gpu_instancing by default, gltfpack does with
 #             -mi, both whatever the signs of the nodes' scales. A GPU draws a batch with one winding: three.js chooses it
 #             by the object's own matrix, so the mirrored instances show their insides. As nodes of their own they are
 #             right. three.js calls negative scales of instances unsupported; the extension does not forbid them.

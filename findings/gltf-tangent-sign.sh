@@ -2,7 +2,7 @@
 # gltfpack -gt and three.js' computeTangents write glTF tangents with the handedness reversed: bumps turn into dents
 #
 # Versions:   npm gltfpack 1.3.0, three 0.187.0, @gltf-transform/core + functions 4.5.1, mikktspace 1.1.1
-# Behaviour:  in glTF v runs down the image and green of a normal map points up it, so an unmirrored chart has
+# Behavior:  in glTF v runs down the image and green of a normal map points up it, so an unmirrored chart has
 #             TANGENT.w = +1 (bitangent = cross(normal, tangent) * w points where v decreases). gltf-transform's
 #             tangents() turns over the sign that MikkTSpace gives. gltfpack's new option -gt does not; nor does
 #             BufferGeometry.computeTangents(), whose tangents GLTFExporter writes as they are.

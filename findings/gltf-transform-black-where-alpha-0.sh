@@ -2,7 +2,7 @@
 # gltf-transform + sharp: resizing, JPEG or *lossless* WebP paint an opaque texture black where its alpha is 0
 #
 # Versions:   npm sharp 0.35.5, @gltf-transform/core + functions 4.5.1; beside it Pillow 13.0.0
-# Behaviour:  glTF ignores the alpha of base colour in a material of alphaMode OPAQUE, and artists keep other things in it.
+# Behavior:  glTF ignores the alpha of base colour in a material of alphaMode OPAQUE, and artists keep other things in it.
 #             textureCompress() knows the material yet hands the image to sharp as RGBA, and sharp multiplies by alpha to
 #             resize, lays on black for JPEG, and lets lossless WebP drop colours under alpha 0 (lossy WebP keeps them).
 #             Pillow's resize, thumbnail, reduce and rotate do the same to an RGBA image.

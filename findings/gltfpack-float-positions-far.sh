@@ -2,7 +2,7 @@
 # gltfpack -vpf ("floating point attributes for positions") is 300 times less exact than its integers, far from the origin
 #
 # Versions:   npm gltfpack 1.3.0; trimesh 5.2.0 to write and read, numpy 2.4.6
-# Behaviour:  with -vpf positions are floats, but each is rounded to the -vp bits (14) of its own mantissa, so the error
+# Behavior:  with -vpf positions are floats, but each is rounded to the -vp bits (14) of its own mantissa, so the error
 #             grows with the distance from the origin, where the default integers' error is a share of the box alone.
 #             -vp 16, the most there is, makes it four times smaller. Only -noq leaves floats alone.
 # Output seen: a sphere of radius 0.5 at x = 1000: default 4.6e-05, -vpf 1.6e-02, -vpf -vp 16 3.9e-03, -noq 0

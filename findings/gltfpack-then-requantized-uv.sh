@@ -2,7 +2,7 @@
 # gltf-transform's dequantize and quantize after gltfpack leave 257 of 4,096 steps of UV: letters of a texture shift
 #
 # Versions:   npm gltfpack 1.3.0, @gltf-transform/core, extensions, functions 4.5.1
-# Behaviour:  gltfpack keeps 12-bit UVs as integers 0..4095 in a normalized short, which is 0..0.0625, and scales them back
+# Behavior:  gltfpack keeps 12-bit UVs as integers 0..4095 in a normalized short, which is 0..0.0625, and scales them back
 #             by 16 with KHR_texture_transform. gltf-transform's quantize() rounds UVs to 1/4095 of [0, 1], whatever
 #             texture transform follows, so its 12 bits are 8 once the transform is applied. dequantize() leaves the
 #             transform where it is. Both tools say 12 bits and neither warns.

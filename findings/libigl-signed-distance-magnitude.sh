@@ -2,7 +2,7 @@
 # libigl: the signed distance of two overlapping bodies is three times too deep
 #
 # Versions:   libigl 2.6.3 (Python), point-cloud-utils 0.34.0, numpy 2.4.6
-# Behaviour:  signed_distance with its default sign type, WINDING_NUMBER or FAST_WINDING_NUMBER multiplies the
+# Behavior:  signed_distance with its default sign type, WINDING_NUMBER or FAST_WINDING_NUMBER multiplies the
 #             distance by (1 - 2w), w the winding number, in place of taking a sign from w. Inside two bodies at once
 #             w is 2 and the value is -3 x the distance. With the fast type w is approximate, so even one clean closed
 #             sphere gets a wrong magnitude everywhere. An open half sphere has values near 0 where its cap is missing.

@@ -2,7 +2,7 @@
 # meshio gives the UVs of an OBJ to the wrong vertices: it pairs them by their order in the file
 #
 # Versions:   meshio 5.3.5, trimesh 5.2.0, numpy 2.4.6
-# Behaviour:  the face corners of an OBJ say which vt goes with which v (f 4/3). meshio's reader drops that and offers the
+# Behavior:  the face corners of an OBJ say which vt goes with which v (f 4/3). meshio's reader drops that and offers the
 #             vt lines in order as point data "obj:vt". If there are as many vt as v, in another order, UVs are permuted
 #             without a word; if there are more (any seam) it raises. Normals ("obj:vn") likewise.
 # Output seen: a square whose faces say 1/1 2/2 4/3 and 1/1 4/3 3/4, as common exporters write a plane: the vertex at

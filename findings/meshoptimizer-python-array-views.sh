@@ -2,7 +2,7 @@
 # meshoptimizer (Python): simplify reads the wrong vertices from an array that is a view, without a word
 #
 # Versions:   meshoptimizer 0.2.30a0 (Python), numpy 2.4.6
-# Behaviour:  the wrapper hands C the array's first address and a stride computed from shape and item size; NumPy's own
+# Behavior:  the wrapper hands C the array's first address and a stride computed from shape and item size; NumPy's own
 #             strides are not looked at. vertices[:, :3] of an interleaved float32 array, or a Fortran-ordered one, is
 #             read as if packed: positions are made of normals and UVs. float64 input hides it (the cast makes a copy),
 #             and so does encode_vertex_buffer, which copies first. simplify_with_attributes and the optimizers share it.

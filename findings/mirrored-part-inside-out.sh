@@ -2,7 +2,7 @@
 # A mirrored part (a node with a negative scale) comes out inside out from VTK, assimp and three.js' exporters
 #
 # Versions:   pyvista 0.49.1 on vtk 9.7.2, assimp-py 1.1.0, trimesh 5.2.0, numpy 2.4.6; npm three 0.187.0
-# Behaviour:  glTF says that a node transform of negative determinant turns the winding over, so that outside stays
+# Behavior:  glTF says that a node transform of negative determinant turns the winding over, so that outside stays
 #             outside. VTK's glTF reader and assimp's PreTransformVertices apply the matrix and keep the index order;
 #             three.js draws it right, but its OBJExporter and STLExporter write it the same wrong way (the STL with
 #             facet normals that point inwards). trimesh does turn the faces over.

@@ -2,7 +2,7 @@
 # MuJoCo: the distance to a geom of type "sdf" is the cut-off outside and a third of the depth inside
 #
 # Versions:   mujoco 4.0.0, numpy 2.4.6
-# Behaviour:  a mesh used by <geom type="sdf" mesh="..."/> is compiled to an octree of signed distances, but
+# Behavior:  a mesh used by <geom type="sdf" mesh="..."/> is compiled to an octree of signed distances, but
 #             mj_geomDistance answers from the contact solver: with no overlap it returns distmax whatever the gap, with
 #             overlap some 0.37 of the depth, less when deep. The same mesh as type="mesh" (convex hull) answers right.
 # Output seen: a ball of radius 0.2 at a gap of 0.30 from a unit sphere: mesh 0.300, sdf 10.000 (distmax); overlapping by

@@ -2,7 +2,7 @@
 # point-cloud-utils: make_mesh_watertight makes a mesh that is watertight already 6 % larger
 #
 # Versions:   point-cloud-utils 0.34.0, numpy 2.4.6
-# Behaviour:  the mesh is rebuilt around an octree of `resolution` leaves, a cell or two outside of the input, also where
+# Behavior:  the mesh is rebuilt around an octree of `resolution` leaves, a cell or two outside of the input, also where
 #             the input is closed and needed nothing. The offset is one-sided, so it does not average out: 2 % of the
 #             radius at the default of 20,000.
 # Output seen: unit sphere of 1,472 triangles, closed: default: 80,000 faces, volume x 1.06, radius 1.008 to 1.021; 5,000:

@@ -2,7 +2,7 @@
 # potpourri3d: a body that cannot be reached gets an ordinary geodesic distance, not infinity
 #
 # Versions:   potpourri3d 1.4.0, numpy 2.4.6, scipy 1.17.1
-# Behaviour:  the heat method solvers for meshes and for point clouds answer for every vertex. On a part that no edge joins
+# Behavior:  the heat method solvers for meshes and for point clouds answer for every vertex. On a part that no edge joins
 #             to the source the result is one constant, here half of the farthest reachable distance, and so nearer than
 #             half of the body that the source is on. No warning, no NaN.
 # Output seen: two unit spheres, centres 5 apart, source on one. Mesh: own sphere 0 to 3.133, the other 1.567 at every

@@ -2,7 +2,7 @@
 # pymeshlab: the Hausdorff distance leaves out what is far: a part 5 units off counts as 0
 #
 # Versions:   pymeshlab 2025.7.post1, numpy 2.4.6
-# Behaviour:  get_hausdorff_distance has maxdist = 50 % of the diagonal by default and drops samples with nothing within
+# Behavior:  get_hausdorff_distance has maxdist = 50 % of the diagonal by default and drops samples with nothing within
 #             it, from the maximum too; only n_samples tells, and nobody knows what it should be. If all are dropped:
 #             mean and RMS NaN, max 0. Beside that it samples vertices alone unless sampleface=True, so a large flat
 #             face against a bump gives 0 as well.

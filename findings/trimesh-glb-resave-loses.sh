@@ -2,7 +2,7 @@
 # trimesh: loading a GLB and saving it re-compresses its JPEGs at quality 75 and forgets how textures wrap
 #
 # Versions:   trimesh 5.2.0, Pillow 13.0.0, numpy 2.4.6
-# Behaviour:  load().export() of a GLB with nothing done in between decodes each image and writes a JPEG anew at Pillow's
+# Behavior:  load().export() of a GLB with nothing done in between decodes each image and writes a JPEG anew at Pillow's
 #             default quality with 4:2:0 chroma; samplers (clamp, mirrored repeat, nearest), normalTexture.scale and
 #             occlusionTexture.strength are gone, without a word. Factors, alpha mode and names are kept.
 # Output seen: JPEG 52 kB -> 13 kB, rms error against the original picture 1.3 -> 5.7 of 255; no samplers;

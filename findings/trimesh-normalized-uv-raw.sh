@@ -2,7 +2,7 @@
 # trimesh reads the integer UVs of a gltfpack file raw, and wraps them around in 16 bits
 #
 # Versions:   trimesh 5.2.0, Pillow 13.0.0, numpy 2.4.6; npm gltfpack 1.3.0
-# Behaviour:  glTF allows UVs as normalized unsigned bytes or shorts without any extension, and gltfpack writes them
+# Behavior:  glTF allows UVs as normalized unsigned bytes or shorts without any extension, and gltfpack writes them
 #             so by default (with KHR_texture_transform). trimesh ignores `normalized` and the texture transform, and
 #             turns v over as 1 - v in the integers' own type: 4095 becomes 61442. No error, no warning; positions
 #             are right, as gltfpack scales those in the node.

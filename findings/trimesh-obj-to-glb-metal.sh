@@ -2,7 +2,7 @@
 # trimesh: every OBJ saved as GLB is polished metal, and darker
 #
 # Versions:   trimesh 5.2.0, Pillow 13.0.0; beside it npm obj2gltf 3.2.0
-# Behaviour:  trimesh's conversion of an OBJ's material to glTF writes roughnessFactor but no metallicFactor, and glTF's
+# Behavior:  trimesh's conversion of an OBJ's material to glTF writes roughnessFactor but no metallicFactor, and glTF's
 #             default for that is 1.0: full metal. A material with an image but no Kd gets Kd 0.4 and so
 #             baseColorFactor 0.4, linear. `d 0.5` (opacity) is lost.
 # Output seen: trimesh: metallicFactor absent (= 1), baseColorFactor [0.4, 0.4, 0.4, 1], alphaMode absent

@@ -2,7 +2,7 @@
 # xatlas: a model in metres with fine triangles gets NaN for all its UVs, a small part of a larger one gets (0, 0)
 #
 # Versions:   xatlas 0.0.11 (Python), numpy 2.4.6
-# Behaviour:  triangles of less than about 1.2e-7 square units (the smallest step of a float at 1) count as degenerate,
+# Behavior:  triangles of less than about 1.2e-7 square units (the smallest step of a float at 1) count as degenerate,
 #             whatever the size of the mesh, and are left out of charts. If all are, the atlas is empty and its UVs are
 #             0 / 0; if some are, those are put on the point (0, 0). parametrize() returns as usual.
 # Output seen: a ball of 1,984 triangles: radius 50 mm fine; 2 mm, in metres: every UV NaN; a 2 mm ball beside one of

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from pathlib import Path
 
 import numpy as np
 
@@ -93,6 +94,12 @@ class TexturedMesh:
         _expect_range("faces", self.faces, 0, len(self.positions))
         _expect_range("uv_faces", self.uv_faces, -1, len(self.uvs))
         _expect_range("face_materials", self.face_materials, 0, len(self.materials))
+
+    def save(self, path: str | Path) -> list[Path]:
+        """Write the mesh in the format of the path's suffix; see `nispcodec.write_mesh`."""
+        from nispcodec.io.save import write_mesh
+
+        return write_mesh(self, path)
 
     @staticmethod
     def geometry_only(positions: Float64Array, faces: IntArray, name: str) -> TexturedMesh:

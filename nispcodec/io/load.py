@@ -29,7 +29,7 @@ READERS: dict[str, Reader] = {
 }
 
 
-def load_mesh(path: Path) -> TexturedMesh:
+def load_mesh(path: str | Path) -> TexturedMesh:
     """Read OBJ, glTF, GLB, PLY, STL or OFF with its materials and textures, cleaned up.
 
     Positions are in the world frame, in the file's units; UVs have their origin bottom-left.

@@ -2,7 +2,7 @@
 # trimesh: merging textured meshes turns their colours into negatives, and dielectrics into metal
 #
 # Versions:   trimesh 5.2.0, Pillow 13.0.0, numpy 2.4.6
-# Behaviour:  Scene.to_mesh(), load(force="mesh") and util.concatenate pack several PBR materials into one atlas. The
+# Behavior:  Scene.to_mesh(), load(force="mesh") and util.concatenate pack several PBR materials into one atlas. The
 #             base colour texture is multiplied by baseColorFactor, which trimesh keeps as bytes 0..255, and the
 #             product is cast to 8 bits: a texel of 200 times factor 1.0 gives 200 x 255 mod 256 = 56. So a factor of
 #             [1, 1, 1, 1], which exporters write and which means "leave it", inverts the image. (The cast out of range
