@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from nispcodec.bake.tangents import Frames
+from nispcodec.bake.tangents import TangentFrames
 from nispcodec.core.arrays import Float32Array, Float64Array, Int32Array
 from nispcodec.core.asset import Material
 from nispcodec.core.slots import BY_NAME, SLOTS
@@ -24,7 +24,9 @@ def further_slots(model: NispModel) -> tuple[str, ...]:
     return tuple(slot for slot in SLOTS[1:] if any(slot in each.maps for each in materials))
 
 
-def baked_maps(model: NispModel, points: Float64Array, frames: Frames) -> dict[str, Float32Array]:
+def baked_maps(
+    model: NispModel, points: Float64Array, frames: TangentFrames
+) -> dict[str, Float32Array]:
     """Texels (n, 3) in [0, 1], as stored in images, of every further slot at world points (n, 3).
 
     Normals are turned from the directions of the old UVs into those of `frames`.
@@ -72,7 +74,7 @@ def _turned(
     normals: Float32Array,
     points: Float64Array,
     charts: Int32Array,
-    frames: Frames,
+    frames: TangentFrames,
 ) -> Float32Array:
     """Normals (n, 3) of the old tangent space in the new one: both lie in the same plane.
 

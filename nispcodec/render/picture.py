@@ -107,7 +107,7 @@ class Eye:
 
         def see(band: slice) -> None:
             directions = self.camera.directions(x[band] / self.size, y[band] / self.size)
-            self._see(directions, seen.part(band), 2 * self.camera.reach / self.size / samples)
+            self._see(directions, seen.part(band), 2 * self.camera.half_width / self.size / samples)
 
         size = max(1, min(BAND, -(-len(x) // cores())))
         parallel_for(see, [slice(start, start + size) for start in range(0, len(x), size)])
@@ -160,7 +160,7 @@ class Eye:
         edges = np.zeros(shape, np.bool_)
         depth = seen.distances.reshape(shape)
         normals, alpha = seen.normals.reshape(*shape, 3), seen.color[:, 3].reshape(shape)
-        deep = DEEP * 2 * self.camera.reach / self.size
+        deep = DEEP * 2 * self.camera.half_width / self.size
         for here, there in (
             ((slice(None), slice(1, None)), (slice(None), slice(-1))),
             ((slice(1, None), slice(None)), (slice(-1), slice(None))),

@@ -8,8 +8,7 @@ import pytest
 from nispcodec.dataset.config import SamplingConfig
 from nispcodec.dataset.recipes import paper_training_sets
 from nispcodec.geometry.analysis import normalizing_frame
-from nispcodec.geometry.config import GeometryConfig
-from nispcodec.geometry.config import SolidConfig
+from nispcodec.geometry.config import GeometryConfig, SolidConfig
 from nispcodec.geometry.surface_points import barycentric
 from tests.geometry.shapes import box_asset, cube, hemisphere, soup
 from tests.samplers import analysis_of, sampler_of
