@@ -18,8 +18,9 @@ TURN_SECONDS = 4.0
 
 
 def image_bytes(pictures: Sequence[Float32Array], suffix: str) -> bytes:
-    """An image file of one of SUFFIXES: animated, one turn in TURN_SECONDS, when it is of many.
+    """The bytes of an image file, by one of SUFFIXES; several pictures are an animation.
 
+    It lasts TURN_SECONDS and repeats.
     Pictures are (h, w, 3) or (h, w, 4) float in [0, 1], sRGB-encoded. GIF knows no half
     transparency: its pictures stand on white.
     """
