@@ -97,7 +97,7 @@ class RunHeader:
 
     @cached_property
     def starts(self) -> Int64Array:
-        """Where the tokens' frequencies begin; without model there is one token, zero."""
+        """(tokens + 1,) int64: where the frequencies begin; without model one token, zero."""
         if self.model is None:
             return np.array([0, rans.SCALE])
         return self.model.starts(frequency_model.cells(self.limit)[0])
