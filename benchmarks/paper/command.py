@@ -10,12 +10,12 @@ from pathlib import Path
 
 import click
 
-from benchmarks.machine import commit, machine, versions
+from benchmarks.measuring.machine import commit, machine, versions
 from benchmarks.paper.quality import quality
 from benchmarks.paper.queries import queries
 from benchmarks.paper.row import Comparison
 from benchmarks.paper.sizes import sizes
-from benchmarks.store import Store
+from benchmarks.rate_distortion.store import Store
 from nispcodec.core.atomic_write import write_atomic
 
 HEAD = "# The paper's numbers beside ours\n\nWritten by `python -m benchmarks.paper`.\n"

@@ -22,10 +22,10 @@ import numpy as np
 import torch
 from torch import Tensor
 
-from benchmarks.codings import stored
-from benchmarks.machine import commit, machine, versions
+from benchmarks.measuring.machine import commit, machine, versions
 from benchmarks.paper.pruning_figure import draw, tables
 from benchmarks.paper.pruning_published import RATES, SIZED, SIZES
+from benchmarks.studies.codings import stored
 from nispcodec.core.atomic_write import write_atomic
 from nispcodec.core.network import Network
 from nispcodec.core.progress import silent

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from benchmarks.paper.row import Comparison
-from benchmarks.store import Record, Store
+from benchmarks.rate_distortion.store import Record, Store
 from nispcodec.format import unpack
 
 PRESET = {"preset": "balanced"}

@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from benchmarks.readme import duel_cells, percentage, replaced, size_of, table
+from benchmarks.report.readme import duel_cells, percentage, replaced, size_of, table
 
 
 def test_only_what_stands_between_the_markers_changes() -> None:
