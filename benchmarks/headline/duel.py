@@ -10,7 +10,6 @@ UV error is no larger either.
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -20,9 +19,9 @@ import numpy as np
 
 from benchmarks.headline.main_job import RESULTS as MAIN_JOB
 from benchmarks.measuring.machine import commit
+from benchmarks.measuring.result_file import read_result, write_result
 from benchmarks.rate_distortion.rows import Row, from_csv, row
 from benchmarks.rate_distortion.summary import OURS, RIVAL, duels
-from nispcodec.core.atomic_write import write_atomic
 
 PRECISE = ("spot", "food_apple_01", "chess_king", "tea_set_01")
 POINTS = Path("benchmarks/results/bench.csv")
@@ -70,7 +69,7 @@ def mean_share(table: Mapping[str, Duel], assets: Sequence[str], demand: str) ->
 @click.option("-o", "--output", type=click.Path(path_type=Path), default=RESULTS, show_default=True)
 def main(points: Path, output: Path) -> None:
     """Print the table and write it as JSON."""
-    records = json.loads(Path(MAIN_JOB).read_text(encoding="utf-8"))["assets"]
+    records = read_result(MAIN_JOB)["assets"]
     everyone = from_csv(points.read_text(encoding="utf-8"))
     rivals = [each for each in everyone if each["codec"] == RIVAL]
     rows = [*rivals, *our_rows(records)]
@@ -85,8 +84,7 @@ def main(points: Path, output: Path) -> None:
     for name, found in table.items():
         click.echo(f"{name:<18}{found['bytes']:>8,}  {found['rival_bytes']}  {found['share']}")
     click.echo(f"geometric means {means}")
-    everything = {"commit": commit(), "assets": table, "means": means}
-    write_atomic(output, json.dumps(everything, indent=1).encode() + b"\n")
+    write_result(output, {"commit": commit(), "assets": table, "means": means})
 
 
 if __name__ == "__main__":

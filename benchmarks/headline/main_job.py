@@ -18,9 +18,9 @@ import numpy as np
 
 from benchmarks.measuring.machine import commit, machine, versions
 from benchmarks.measuring.process import Run, run
-from benchmarks.measuring.target import Record, Target
+from benchmarks.measuring.result_file import Record, result_so_far, write_result
+from benchmarks.measuring.target import Target
 from nispcodec.core.asset import TexturedMesh
-from nispcodec.core.atomic_write import write_atomic
 from nispcodec.format import unpack
 from nispcodec.io.load import load_mesh
 from nispcodec.metrics.compare import compare
@@ -30,7 +30,7 @@ from nispcodec.model import NispModel
 from nispcodec.render.camera import turntable
 from nispcodec.render.views import on_white, render_views
 
-RESULTS = "benchmarks/results/main_job.json"
+RESULTS = Path("benchmarks/results/main_job.json")
 NISP = Path(sys.executable).with_name("nisp")
 PRECISE = {"spot", "food_apple_01", "chess_king", "tea_set_01"}
 LARGE = {"flight_helmet", "gz_polaris"}
@@ -122,9 +122,7 @@ def attempt(source: Path, keep: Path | None, preset: str, seed: int) -> Record:
 
 def store(path: Path, records: dict[str, Record]) -> None:
     """Write all results so far, whole or not at all."""
-    path.parent.mkdir(parents=True, exist_ok=True)
-    everything = {"machine": machine(), "versions": versions(), "assets": records}
-    write_atomic(path, json.dumps(everything, indent=1).encode() + b"\n")
+    write_result(path, {"machine": machine(), "versions": versions(), "assets": records})
 
 
 @click.command()
@@ -145,7 +143,7 @@ def main(
     output: Path,
 ) -> None:
     """Run the main job on every asset and print asked against measured."""
-    records = json.loads(output.read_text())["assets"] if output.exists() else {}
+    records = result_so_far(output).get("assets", {})
     for source in sorted(assets.glob("*/*.obj")):
         name = source.stem
         done = name in records and "failure" not in records[name]

@@ -19,7 +19,8 @@ import numpy as np
 import nispcodec
 from benchmarks.measuring.model_records import measured, models_options
 from benchmarks.measuring.process import run
-from benchmarks.measuring.target import Record, Target
+from benchmarks.measuring.result_file import Record
+from benchmarks.measuring.target import Target
 from nispcodec.core.arrays import Float32Array
 from nispcodec.io.load import load_mesh
 from nispcodec.metrics.pictures import compare_pictures

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Callable
 from functools import reduce
 from hashlib import sha256
@@ -11,8 +10,7 @@ from pathlib import Path
 import click
 
 from benchmarks.measuring.machine import commit, machine, versions
-from benchmarks.measuring.target import Record
-from nispcodec.core.atomic_write import write_atomic
+from benchmarks.measuring.result_file import Record, result_so_far, write_result
 
 Command = Callable[..., None]
 
@@ -42,7 +40,7 @@ def measured(
     Those asked for that have none of these very bytes are measured, from the model's path and the
     original's, told one by one and kept at once, with the machine and whatever else belongs to it.
     """
-    records: Record = json.loads(output.read_text())["assets"] if output.exists() else {}
+    records: Record = result_so_far(output).get("assets", {})
     for path in sorted(models.glob("*.nisp")):
         name, bytes_now = path.stem, sha256(path.read_bytes()).hexdigest()
         if (only and name not in only) or records.get(name, {}).get("model") == bytes_now:
@@ -51,6 +49,5 @@ def measured(
         found = measure(path, assets / name / f"{name}.obj")
         records[name] = {"commit": commit(), "model": bytes_now, **found}
         everything = {"machine": machine(), "versions": versions(), **more, "assets": records}
-        output.parent.mkdir(parents=True, exist_ok=True)
-        write_atomic(output, json.dumps(everything, indent=1).encode() + b"\n")
+        write_result(output, everything)
     return dict(sorted(records.items()))

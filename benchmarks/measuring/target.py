@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-Record = dict[str, Any]
+from benchmarks.measuring.result_file import Record
 
 
 @dataclass(frozen=True)

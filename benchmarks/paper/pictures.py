@@ -22,7 +22,8 @@ from torch import Tensor
 
 import nispcodec
 from benchmarks.measuring.model_records import measured, models_options
-from benchmarks.measuring.target import Record, Target
+from benchmarks.measuring.result_file import Record
+from benchmarks.measuring.target import Target
 from nispcodec.core.arrays import Float32Array, Int64Array
 from nispcodec.core.asset import TexturedMesh
 from nispcodec.core.atomic_write import write_atomic

@@ -8,23 +8,21 @@ cores end. Writes the curve, the held-out measurements and the size beside the p
 
 from __future__ import annotations
 
-import json
 import time
 from pathlib import Path
-from typing import Any
 
 import click
 
 import nispcodec
 from benchmarks.measuring.machine import commit, machine, versions
-from nispcodec.core.atomic_write import write_atomic
+from benchmarks.measuring.result_file import Record, as_json, write_result
 from nispcodec.core.progress import Progress
 from nispcodec.encode.config import Tuning
 from nispcodec.format import pack
 from nispcodec.io.load import load_mesh
 from nispcodec.train.config import PaperConfig, TrainConfig
 
-RESULTS = "benchmarks/results/paper_preset.json"
+RESULTS = Path("benchmarks/results/paper_preset.json")
 POINTS = 100
 
 PUBLISHED = {
@@ -50,7 +48,7 @@ class Curve:
             known.append((update.step, round(time.monotonic() - self.started, 1), update.error))
 
 
-def measure(source: Path, steps: int) -> dict[str, Any]:
+def measure(source: Path, steps: int) -> Record:
     """Encode with the preset; no textures, as sizes are of networks and tables."""
     training = TrainConfig(paper=PaperConfig(steps=steps))
     curve = Curve()
@@ -80,9 +78,8 @@ def main(source: Path, output: Path, steps: int) -> None:
         "versions": versions(),
         **measure(source, steps),
     }
-    output.parent.mkdir(parents=True, exist_ok=True)
-    write_atomic(output, json.dumps(result, indent=1).encode() + b"\n")
-    print(json.dumps({key: value for key, value in result.items() if key != "curve"}, indent=1))
+    write_result(output, result)
+    click.echo(as_json({key: value for key, value in result.items() if key != "curve"}))
 
 
 if __name__ == "__main__":

@@ -10,9 +10,10 @@ import click
 
 from benchmarks.assets.source import Source, sources
 from benchmarks.codecs import CODECS, EVERY_CORE, OPTIONAL
+from benchmarks.measuring.result_file import Record
 from benchmarks.rate_distortion.results import write_results
 from benchmarks.rate_distortion.runner import Finished, Job, drawings, plan, run
-from benchmarks.rate_distortion.store import Record, Store
+from benchmarks.rate_distortion.store import Store
 from benchmarks.rate_distortion.textures import TEXTURES
 
 QUICK_ASSETS = 2

@@ -12,7 +12,7 @@ import PIL.Image
 from benchmarks.assets.source import Source
 from benchmarks.codecs import codec
 from benchmarks.measuring.isolated import WorkFailed, isolated
-from benchmarks.rate_distortion.store import Record
+from benchmarks.measuring.result_file import Record
 from nispcodec.core.arrays import Float32Array
 from nispcodec.core.asset import TexturedMesh
 from nispcodec.metrics.pictures import compare_pictures

@@ -8,7 +8,6 @@ the normalized frame, the larger of both directions, outer samples only.
 
 from __future__ import annotations
 
-import json
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -16,11 +15,11 @@ from typing import Any
 import click
 
 from benchmarks.measuring.machine import commit
+from benchmarks.measuring.result_file import write_result
 from benchmarks.rate_distortion.hull import lower_hull
 from benchmarks.rate_distortion.rows import ERRORS, Row, curve, pairs, row
 from benchmarks.rate_distortion.store import Store
 from benchmarks.rate_distortion.summary import LEVELS, RIVAL, fixed
-from nispcodec.core.atomic_write import write_atomic
 
 SHOWN = ("setting", "faces", "bytes", "distance", "distance_p99", "uv", "uv_median", "color_psnr")
 
@@ -56,9 +55,7 @@ def main(points: Path, output: Path) -> None:
         for asset, found in table.items():
             cells = [f"{level}: {size}" for level, size in found["bytes_at"][error].items()]
             click.echo(f"  {asset:<18}" + "  ".join(cells))
-    write_atomic(
-        output, json.dumps({"commit": commit(), "assets": table}, indent=1).encode() + b"\n"
-    )
+    write_result(output, {"commit": commit(), "assets": table})
 
 
 if __name__ == "__main__":

@@ -8,7 +8,7 @@ from benchmarks.assets.source import Source
 from benchmarks.codecs import Setting, codec
 from benchmarks.measuring.isolated import WorkFailed, isolated
 from benchmarks.measuring.machine import commit
-from benchmarks.rate_distortion.store import Record
+from benchmarks.measuring.result_file import Record
 
 
 def measured(source: Source, name: str, setting: Setting) -> tuple[Record, bytes]:

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Sequence
 from pathlib import Path
 
 from benchmarks.assets.source import SAMPLES, SEED
 from benchmarks.measuring.machine import commit, machine, versions
+from benchmarks.measuring.result_file import Record, write_result
 from benchmarks.rate_distortion.rows import ERRORS, as_csv, row
-from benchmarks.rate_distortion.store import Record, Store
+from benchmarks.rate_distortion.store import Store
 from benchmarks.rate_distortion.summary import summarized
 from benchmarks.rate_distortion.textures import TEXTURES
 from benchmarks.report.page import page
@@ -22,7 +22,7 @@ SCHEMA = 1
 def write_results(store: Store, folder: Path) -> Path:
     """Write everything into a folder -> the path of the report."""
     results = gathered(store)
-    write_atomic(folder / "results.json", json.dumps(results, indent=1).encode() + b"\n")
+    write_result(folder / "results.json", results)
     rows = [row(record) for record in results["points"]]
     write_atomic(folder / "results.csv", as_csv(rows).encode())
     for error in ERRORS:

@@ -7,7 +7,7 @@ import io
 from collections.abc import Sequence
 from typing import Any
 
-from benchmarks.rate_distortion.store import Record
+from benchmarks.measuring.result_file import Record
 
 Row = dict[str, Any]
 

@@ -12,10 +12,11 @@ from time import monotonic
 
 from benchmarks.assets.source import Source
 from benchmarks.codecs import Setting, Unavailable, codec
+from benchmarks.measuring.result_file import Record
 from benchmarks.rate_distortion import drawing, point, textures
 from benchmarks.rate_distortion.hull import lower_hull
 from benchmarks.rate_distortion.rows import pairs, row
-from benchmarks.rate_distortion.store import Record, Store
+from benchmarks.rate_distortion.store import Store
 from benchmarks.rate_distortion.textures import TEXTURES
 
 # Codecs whose decodes are worth looking at; text and floats look like the original.

@@ -5,12 +5,10 @@ from __future__ import annotations
 import json
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 from benchmarks.codecs import Setting
+from benchmarks.measuring.result_file import Record
 from nispcodec.core.atomic_write import write_atomic
-
-Record = dict[str, Any]
 
 
 @dataclass(frozen=True)

@@ -11,7 +11,7 @@ from benchmarks.assets.source import Source
 from benchmarks.codecs import Setting
 from benchmarks.measuring.isolated import WorkFailed, isolated
 from benchmarks.measuring.machine import commit
-from benchmarks.rate_distortion.store import Record
+from benchmarks.measuring.result_file import Record
 from nispcodec.core.asset import Texture
 from nispcodec.core.texture import decode_image, reencode
 from nispcodec.metrics.psnr import psnr

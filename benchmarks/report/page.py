@@ -7,9 +7,10 @@ from collections.abc import Sequence
 from html import escape
 
 from benchmarks.codecs import CODECS
+from benchmarks.measuring.result_file import Record
 from benchmarks.rate_distortion.bjontegaard import front
 from benchmarks.rate_distortion.rows import ERRORS, Row, curve, pairs, row
-from benchmarks.rate_distortion.store import Record, Store
+from benchmarks.rate_distortion.store import Store
 from benchmarks.report.chart import Dot, Line, chart
 from benchmarks.report.plots import COLORS, LEAST_ERROR
 from benchmarks.report.tables import against, costs, points, table, textures

@@ -11,7 +11,6 @@ and the sizes of the other codecs.
 from __future__ import annotations
 
 import csv
-import json
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Any
@@ -21,6 +20,7 @@ import click
 from benchmarks.headline.duel import PRECISE
 from benchmarks.headline.duel import RESULTS as DUEL
 from benchmarks.headline.main_job import RESULTS
+from benchmarks.measuring.result_file import read_result, write_result
 from benchmarks.studies.crossover import RESULTS as CROSSOVER
 from nispcodec.core.atomic_write import write_atomic
 
@@ -66,7 +66,7 @@ def row(name: str, record: dict[str, Any]) -> list[str]:
 
 def measured() -> str:
     """The table of `benchmarks.headline.main_job`."""
-    results = json.loads(Path(RESULTS).read_text(encoding="utf-8"))
+    results = read_result(RESULTS)
     rows = [row(name, record) for name, record in sorted(results["assets"].items())]
     machine = results["machine"]
     where = f"\nMeasured on {machine['cores']} cores, {machine['processor']}.\n"
@@ -75,8 +75,8 @@ def measured() -> str:
 
 def compared() -> str:
     """The table of the duel; delta rates and other codecs' sizes are from `benchmarks`."""
-    found = json.loads(DUEL.read_text(encoding="utf-8"))
-    rates = json.loads(BENCH.read_text(encoding="utf-8"))["summary"]["delta_rate"]
+    found = read_result(DUEL)
+    rates = read_result(BENCH)["summary"]["delta_rate"]
     with TABLE.open(encoding="utf-8", newline="") as file:
         rows = list(csv.DictReader(file))
     lines = [
@@ -93,7 +93,7 @@ def compared() -> str:
 
 def crossing() -> str:
     """The table of `benchmarks.studies.crossover`."""
-    levels = json.loads(CROSSOVER.read_text(encoding="utf-8"))["levels"]
+    levels = read_result(CROSSOVER)["levels"]
     lines = [
         [
             f"{level['faces']:,}",
@@ -147,9 +147,9 @@ def size_of(rows: list[dict[str, str]], asset: str, title: str) -> int | None:
 
 def keep(folder: Path) -> None:
     """Copy what a run left to where it is committed; the points' details stay behind."""
-    results = json.loads((folder / "results.json").read_text(encoding="utf-8"))
+    results = read_result(folder / "results.json")
     del results["points"]
-    write_atomic(BENCH, json.dumps(results, indent=1).encode() + b"\n")
+    write_result(BENCH, results)
     write_atomic(TABLE, (folder / "results.csv").read_bytes())
     write_atomic(PLOT, (folder / "distance.png").read_bytes())
 

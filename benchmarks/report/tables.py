@@ -7,8 +7,8 @@ from html import escape
 from typing import Any
 
 from benchmarks.codecs import CODECS
+from benchmarks.measuring.result_file import Record
 from benchmarks.rate_distortion.rows import Row
-from benchmarks.rate_distortion.store import Record
 
 COLUMNS = {
     "bytes": ",.0f",

@@ -10,13 +10,13 @@ gain, were distortion free.
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 
 import click
 import numpy as np
 
 from benchmarks.measuring.machine import commit
+from benchmarks.measuring.result_file import write_result
 from nispcodec.core.arrays import Float64Array
 from nispcodec.core.network import Network
 from nispcodec.format import records, unpack, weights
@@ -72,7 +72,7 @@ def main(folder: Path, output: Path | None) -> None:
         for name, record in table[path.stem].items():
             click.echo(f"{path.stem:<18}{name:<7}{record}")
     if output is not None:
-        output.write_text(json.dumps({"commit": commit(), "assets": table}, indent=1) + "\n")
+        write_result(output, {"commit": commit(), "assets": table})
 
 
 if __name__ == "__main__":

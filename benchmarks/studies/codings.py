@@ -7,13 +7,13 @@ Weights are normal and random, the smallest of each matrix pruned: the paper's a
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 
 import click
 import numpy as np
 
 from benchmarks.measuring.machine import commit
+from benchmarks.measuring.result_file import write_result
 from nispcodec.core.network import Network, NetworkSpec
 from nispcodec.format import weights
 from nispcodec.format.constants import CODINGS, NETS
@@ -71,8 +71,7 @@ def main(output: Path | None) -> None:
         cells = (str(table[name].get(coding, "")) for coding in (*CODINGS, "chosen"))
         click.echo(f"| {name} | " + " | ".join(cells) + " |")
     if output is not None:
-        record = {"commit": commit(), "bytes": table}
-        output.write_text(json.dumps(record, indent=1) + "\n")
+        write_result(output, {"commit": commit(), "bytes": table})
 
 
 if __name__ == "__main__":

@@ -10,7 +10,6 @@ for the nearest point, so the spacing of the samples is a floor.
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 
 import click
@@ -19,8 +18,8 @@ import numpy as np
 from benchmarks.assets.source import Source
 from benchmarks.codecs import CODECS, codec
 from benchmarks.measuring.machine import commit
+from benchmarks.measuring.result_file import as_json, write_result
 from nispcodec.core.arrays import Float64Array, IndexArray
-from nispcodec.core.atomic_write import write_atomic
 
 QUERIES, CLOUD, CANDIDATES = 100_000, 2_000_000, 24
 
@@ -115,10 +114,9 @@ def main(asset: Path, name: str, output: Path | None) -> None:
     theirs = psnrs(source.mesh.corners, decoded.corners)
     record = {"asset": source.name, "codec": name, "setting": setting, "commit": commit()}
     record |= {"nispcodec": {k: ours[k] for k in ("d1_psnr", "d2_psnr")}, "independent": theirs}
-    text = json.dumps(record, indent=1)
-    click.echo(text)
+    click.echo(as_json(record))
     if output is not None:
-        write_atomic(output, text.encode() + b"\n")
+        write_result(output, record)
 
 
 if __name__ == "__main__":

@@ -9,7 +9,6 @@ level; Draco keeps the triangles; simplify + Draco drops those that the same err
 
 from __future__ import annotations
 
-import json
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -25,8 +24,8 @@ from benchmarks.assets.source import SEED, Source
 from benchmarks.codecs.draco import encode_corners
 from benchmarks.codecs.simplified_draco import KEPT
 from benchmarks.measuring.machine import commit, machine, versions
+from benchmarks.measuring.result_file import Record, write_result
 from nispcodec.core.asset import TexturedMesh
-from nispcodec.core.atomic_write import write_atomic
 from nispcodec.format import pack, unpack
 from nispcodec.metrics.compare import Reference
 from nispcodec.model import NispModel
@@ -38,8 +37,6 @@ BITS = {"qp": 11, "qt": 10}
 TARGETS = [round(6000 * kept) for kept in KEPT] + [9000, 13_000, 20_000]
 
 RESULTS = Path("benchmarks/results/crossover.json")
-
-Record = dict[str, Any]
 
 
 def subdivided(mesh: TexturedMesh, levels: int) -> TexturedMesh:
@@ -111,7 +108,7 @@ def main(asset: Path, model: Path | None, output: Path) -> None:
         click.echo(f"{levels[-1]['faces']:>9,} triangles: {told(levels[-1])}", err=True)
     record: Record = {"asset": source.name, "commit": commit(), "machine": machine()}
     record |= {"versions": versions(), "levels": levels}
-    write_atomic(output, json.dumps(record, indent=1).encode() + b"\n")
+    write_result(output, record)
 
 
 def told(found: Record) -> str:

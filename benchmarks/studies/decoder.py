@@ -23,7 +23,8 @@ import numpy as np
 
 from benchmarks.headline.main_job import PRECISE
 from benchmarks.measuring.model_records import measured, models_options
-from benchmarks.measuring.target import Record, Target
+from benchmarks.measuring.result_file import Record
+from benchmarks.measuring.target import Target
 from benchmarks.studies.soundness import counted, two_chart_triangles
 from nispcodec.core.arrays import Float32Array
 from nispcodec.core.asset import TexturedMesh

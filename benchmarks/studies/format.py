@@ -11,7 +11,6 @@ empty turns shows (20 to 25 ms when nothing else runs here).
 
 from __future__ import annotations
 
-import json
 import os
 import subprocess
 import sys
@@ -21,13 +20,13 @@ from functools import partial
 from io import BytesIO
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import Any
 
 import click
 import numpy as np
 from PIL import Image
 
 from benchmarks.measuring.machine import commit, machine, versions
+from benchmarks.measuring.result_file import Record, as_json, write_result
 from benchmarks.measuring.target import Target
 from nispcodec.core.asset import Material, Texture, TextureMap
 from nispcodec.core.document import ChartTable, Document, Frame
@@ -90,7 +89,7 @@ def quantized(spec: NetworkSpec, seed: int) -> Network:
     return Network(spec, tensors, dict.fromkeys(tensors, STEP))
 
 
-def measured(data: bytes) -> dict[str, Any]:
+def measured(data: bytes) -> Record:
     """Bytes and milliseconds of one file."""
     sections = {section.code: section for section in inspect(data)}
     content = sum(sections[code].stored_length for code in ("NETS", "TXTR") if code in sections)
@@ -156,7 +155,7 @@ def main(models: tuple[Path, ...], output: Path | None) -> None:
     """Print the numbers as JSON, and what was asked beside what was measured; write them."""
     files = {name: made(width) for name, width in WIDTHS.items()}
     files |= {path.stem: path.read_bytes() for path in models}
-    record: dict[str, Any] = {
+    record: Record = {
         "commit": commit(),
         "machine": machine(),
         "versions": versions(),
@@ -166,13 +165,12 @@ def main(models: tuple[Path, ...], output: Path | None) -> None:
     }
     for name in WIDTHS:
         record["files"][name]["info_ms"] = info_ms(files[name])
-    text = json.dumps(record, indent=1)
-    click.echo(text)
+    click.echo(as_json(record))
     for name, found in record["files"].items():
         for target in targets(name) if found["materials"] == 1 else []:
             click.echo(target.line(name, found), err=True)
     if output is not None:
-        output.write_text(text + "\n")
+        write_result(output, record)
 
 
 if __name__ == "__main__":

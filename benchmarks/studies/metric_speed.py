@@ -5,7 +5,6 @@ python -m benchmarks.studies.metric_speed ../shared/assets/flight_helmet/flight_
 
 from __future__ import annotations
 
-import json
 import time
 from dataclasses import replace
 from pathlib import Path
@@ -13,6 +12,7 @@ from pathlib import Path
 import click
 
 from benchmarks.measuring.machine import commit, machine
+from benchmarks.measuring.result_file import as_json
 from nispcodec.io.load import load_mesh
 from nispcodec.metrics.compare import Reference
 
@@ -38,7 +38,7 @@ def main(asset: Path) -> None:
         "compare_seconds": round(end - middle, 2),
         "cpu_seconds": round(rest - busy, 2),
     }
-    click.echo(json.dumps(record | {"commit": commit(), "machine": machine()}, indent=1))
+    click.echo(as_json(record | {"commit": commit(), "machine": machine()}))
 
 
 if __name__ == "__main__":

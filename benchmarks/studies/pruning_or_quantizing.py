@@ -14,22 +14,20 @@ pruning, or a narrower network, pays.
 
 from __future__ import annotations
 
-import json
 import time
 from collections.abc import Iterator, Sequence
 from contextlib import nullcontext
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 import click
 import numpy as np
 import torch
 
 from benchmarks.measuring.machine import commit, machine, versions
+from benchmarks.measuring.result_file import Record, result_so_far, write_result
 from benchmarks.rate_distortion.bjontegaard import front
 from benchmarks.studies.codings import stored
-from nispcodec.core.atomic_write import write_atomic
 from nispcodec.core.network import Network, NetworkSpec
 from nispcodec.core.progress import silent
 from nispcodec.core.sample_set import SampleSet
@@ -59,8 +57,6 @@ WIDTHS = (0.75, 0.5)
 
 STEPS, BATCH = 1500, 1024
 SAMPLER_SEED = 0
-
-Record = dict[str, Any]
 
 
 def networks(path: Path, steps: int) -> dict[str, Task]:
@@ -152,14 +148,13 @@ def _of(cases: Sequence[Record], asset: str, steps: int) -> list[Record]:
 
 
 def _read(path: Path) -> list[Record]:
-    cases: list[Record] = json.loads(path.read_text())["cases"] if path.exists() else []
+    cases: list[Record] = result_so_far(path).get("cases", [])
     return cases
 
 
 def _write(path: Path, cases: list[Record]) -> None:
-    record = {"machine": machine(), "versions": versions(), "batch": BATCH, "cases": cases}
-    path.parent.mkdir(parents=True, exist_ok=True)
-    write_atomic(path, json.dumps(record, indent=1).encode() + b"\n")
+    how = {"machine": machine(), "versions": versions(), "batch": BATCH}
+    write_result(path, {**how, "cases": cases})
 
 
 def against_quantized(case: Record, point: Record) -> float:

@@ -19,7 +19,8 @@ import click
 
 import nispcodec
 from benchmarks.measuring.model_records import measured, models_options
-from benchmarks.measuring.target import Record, Target
+from benchmarks.measuring.result_file import Record
+from benchmarks.measuring.target import Target
 from nispcodec import EncodeConfig
 from nispcodec.core.network import Network
 from nispcodec.encode import fitting

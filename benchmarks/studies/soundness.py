@@ -12,6 +12,7 @@ from pathlib import Path
 import click
 import numpy as np
 
+from benchmarks.measuring.result_file import write_result
 from nispcodec.core.arrays import BoolArray, Float32Array, Int32Array, Int64Array
 from nispcodec.core.asset import TexturedMesh
 from nispcodec.core.document import Document
@@ -91,8 +92,7 @@ def main(models: tuple[Path, ...], output: Path | None) -> None:
         record[model.stem] = counted(unpack(model.read_bytes()))
         click.echo(f"{model.stem}: {json.dumps(record[model.stem])}")
     if output is not None:
-        output.parent.mkdir(parents=True, exist_ok=True)
-        output.write_text(json.dumps(record, indent=1) + "\n")
+        write_result(output, record)
 
 
 if __name__ == "__main__":
