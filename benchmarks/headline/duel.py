@@ -10,7 +10,7 @@ UV error is no larger either.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -19,7 +19,8 @@ import numpy as np
 
 from benchmarks.headline.main_job import RESULTS as MAIN_JOB
 from benchmarks.measuring.machine import commit
-from benchmarks.measuring.result_file import read_result, write_result
+from benchmarks.measuring.result_file import Record, read_result, write_result
+from benchmarks.measuring.target import Asked, Target
 from benchmarks.rate_distortion.rows import Row, from_csv, row
 from benchmarks.rate_distortion.summary import OURS, RIVAL, duels
 
@@ -27,6 +28,11 @@ PRECISE = ("spot", "food_apple_01", "chess_king", "tea_set_01")
 POINTS = Path("benchmarks/results/bench.csv")
 DEMANDS = ("distance", "distance and uv")
 RESULTS = Path("benchmarks/results/duel.json")
+
+TARGETS = [
+    Target("share of bytes, four", ("distance and uv", "four"), 0.38),
+    Target("share of bytes, all", ("distance and uv", "all"), 0.5),
+]
 
 Duel = dict[str, Any]
 
@@ -64,6 +70,11 @@ def mean_share(table: Mapping[str, Duel], assets: Sequence[str], demand: str) ->
     return float(np.exp(np.mean(np.log(known)))) if known else None
 
 
+def asked(results: Record) -> Iterator[Asked]:
+    """The targets of the geometric means in a result file."""
+    yield from (Asked("geometric means", target, results["means"]) for target in TARGETS)
+
+
 @click.command()
 @click.option("--points", type=click.Path(path_type=Path), default=POINTS, show_default=True)
 @click.option("-o", "--output", type=click.Path(path_type=Path), default=RESULTS, show_default=True)
@@ -84,7 +95,10 @@ def main(points: Path, output: Path) -> None:
     for name, found in table.items():
         click.echo(f"{name:<18}{found['bytes']:>8,}  {found['rival_bytes']}  {found['share']}")
     click.echo(f"geometric means {means}")
-    write_result(output, {"commit": commit(), "assets": table, "means": means})
+    results = {"commit": commit(), "assets": table, "means": means}
+    write_result(output, results)
+    for each in asked(results):
+        click.echo(each.line())
 
 
 if __name__ == "__main__":

@@ -10,6 +10,7 @@ from __future__ import annotations
 import json
 import sys
 import tempfile
+from collections.abc import Iterator
 from dataclasses import asdict
 from pathlib import Path
 
@@ -19,7 +20,7 @@ import numpy as np
 from benchmarks.measuring.machine import commit, machine, versions
 from benchmarks.measuring.process import Run, run
 from benchmarks.measuring.result_file import Record, result_so_far, write_result
-from benchmarks.measuring.target import Target
+from benchmarks.measuring.target import Asked, Target, asked_of_each
 from nispcodec.core.asset import TexturedMesh
 from nispcodec.format import unpack
 from nispcodec.io.load import load_mesh
@@ -38,10 +39,10 @@ VIEWS = 4
 
 
 def targets(asset: str) -> list[Target]:
-    """What issue 2 asks of an asset."""
+    """What is asked of an asset."""
     precise, large = asset in PRECISE, asset in LARGE
     distance, uv = ("metrics", "geometry", "larger", "mean"), ("metrics", "uv", "larger", "median")
-    asked = [
+    each = [
         Target("encode, s", ("encode", "seconds"), 120),
         Target("peak memory, bytes", ("encode", "peak_bytes"), 2e9),
         Target("mean distance", distance, 5e-4 if precise else 1.5e-3),
@@ -50,7 +51,12 @@ def targets(asset: str) -> list[Target]:
         Target("spurious components", ("metrics", "spurious", "count"), 0),
     ]
     accuracy = Target("chart accuracy", ("metrics", "charts", "accuracy"), 0.99, at_least=True)
-    return [*asked, accuracy] if precise else asked
+    return [*each, accuracy] if precise else each
+
+
+def asked(results: Record) -> Iterator[Asked]:
+    """The targets of every asset in a result file."""
+    return asked_of_each(results["assets"], targets)
 
 
 def measure(source: Path, folder: Path, preset: str, seed: int) -> Record:
@@ -82,7 +88,7 @@ def cost(finished: Run) -> Record:
 
 
 def distortion(original: TexturedMesh, decoded: TexturedMesh, model: Path) -> Record:
-    """Every metric of design.md section 6, of the decoded file as read back."""
+    """Every metric of the decoded file as read back."""
     queried = NispModel(unpack(model.read_bytes()))
     report = compare(original, decoded, model=queried)
     return {**report, "pictures": pictures(original, decoded)}

@@ -11,6 +11,7 @@ from __future__ import annotations
 import os
 import sys
 import tempfile
+from collections.abc import Iterator
 from pathlib import Path
 
 import click
@@ -20,7 +21,7 @@ import nispcodec
 from benchmarks.measuring.model_records import measured, models_options
 from benchmarks.measuring.process import run
 from benchmarks.measuring.result_file import Record
-from benchmarks.measuring.target import Target
+from benchmarks.measuring.target import Asked, Target, asked_of_each
 from nispcodec.core.arrays import Float32Array
 from nispcodec.io.load import load_mesh
 from nispcodec.metrics.pictures import compare_pictures
@@ -58,9 +59,14 @@ TARGETS = {
 
 
 def targets(asset: str) -> list[Target]:
-    """What issue 7 asks of an asset."""
+    """What is asked of an asset."""
     kinds = ["", "precise" if asset in PRECISE else "", asset]
     return [each for kind in dict.fromkeys(kinds) for each in TARGETS.get(kind, [])]
+
+
+def asked(results: Record) -> Iterator[Asked]:
+    """The targets of every asset in a result file."""
+    return asked_of_each(results["assets"], targets)
 
 
 def likeness(original: Scene, model: Scene) -> Record:

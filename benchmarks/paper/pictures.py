@@ -12,7 +12,7 @@ a result for the same bytes is not measured again.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -23,7 +23,7 @@ from torch import Tensor
 import nispcodec
 from benchmarks.measuring.model_records import measured, models_options
 from benchmarks.measuring.result_file import Record
-from benchmarks.measuring.target import Target
+from benchmarks.measuring.target import Asked, Target
 from nispcodec.core.arrays import Float32Array, Int64Array
 from nispcodec.core.asset import TexturedMesh
 from nispcodec.core.atomic_write import write_atomic
@@ -66,6 +66,13 @@ TARGETS = [
 
 Painter = Callable[[Float32Array], Float32Array]
 """Points (n, 3), normalized frame -> base colors (n, 3), sRGB-encoded."""
+
+
+def asked(results: Record) -> Iterator[Asked]:
+    """The targets of every asset of several charts in a result file."""
+    for name, record in results["assets"].items():
+        if record["charts"] > 1:
+            yield from (Asked(name, target, record) for target in TARGETS)
 
 
 class PointObjective(UvObjective):
@@ -263,8 +270,8 @@ def _told_of(name: str, record: Record) -> str:
     for kind, each in record["distortion"].items():
         values = ", ".join(f"{key} {value:.4g}" for key, value in each.items())
         lines.append(f"{name:<18}{kind:<16}distortion {values}")
-    asked = TARGETS if record["charts"] > 1 else []
-    return "\n".join([*lines, *(each.line(name, record) for each in asked)])
+    questions = asked({"assets": {name: record}})
+    return "\n".join([*lines, *(each.line() for each in questions)])
 
 
 if __name__ == "__main__":

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 import click
@@ -11,6 +11,7 @@ import click
 from benchmarks.assets.source import Source, sources
 from benchmarks.codecs import CODECS, EVERY_CORE, OPTIONAL
 from benchmarks.measuring.result_file import Record
+from benchmarks.measuring.target import Asked, Target
 from benchmarks.rate_distortion.results import write_results
 from benchmarks.rate_distortion.runner import Finished, Job, drawings, plan, run
 from benchmarks.rate_distortion.store import Store
@@ -19,6 +20,12 @@ from benchmarks.rate_distortion.textures import TEXTURES
 QUICK_ASSETS = 2
 NAMES = (*CODECS, TEXTURES)
 USUAL = [name for name in NAMES if name not in OPTIONAL]
+TARGETS = [Target("delta rate of distance", ("mean_delta_rate", "distance"), -0.45)]
+
+
+def asked(results: Record) -> Iterator[Asked]:
+    """The targets of the means over all assets in a result file."""
+    yield from (Asked("mean", target, results["summary"]) for target in TARGETS)
 
 
 @click.command()

@@ -12,7 +12,7 @@ import json
 import subprocess
 import sys
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from functools import partial
 from itertools import pairwise
@@ -24,7 +24,7 @@ import numpy as np
 from benchmarks.headline.main_job import PRECISE
 from benchmarks.measuring.model_records import measured, models_options
 from benchmarks.measuring.result_file import Record
-from benchmarks.measuring.target import Target
+from benchmarks.measuring.target import Asked, Target, asked_of_each
 from benchmarks.studies.soundness import counted, two_chart_triangles
 from nispcodec.core.arrays import Float32Array
 from nispcodec.core.asset import TexturedMesh
@@ -80,8 +80,15 @@ COLOR = Target("color, dB", ("color", "psnr"), 30, at_least=True)
 
 
 def targets(asset: str) -> list[Target]:
-    """What issue 4 asks of an asset."""
+    """What is asked of an asset."""
     return [*TARGETS, COLOR] if asset in PRECISE else TARGETS
+
+
+def asked(results: Record) -> Iterator[Asked]:
+    """The targets of the queries, and of every asset in a result file."""
+    plain = results["queries_8x64"]["plain"]
+    yield from (Asked("8 x 64", target, plain) for target in QUERIES)
+    yield from asked_of_each(results["assets"], targets)
 
 
 def best_seconds(work: Callable[[], object], repeats: int = REPEATS) -> float:

@@ -15,7 +15,7 @@ import os
 import subprocess
 import sys
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from functools import partial
 from io import BytesIO
 from pathlib import Path
@@ -27,7 +27,7 @@ from PIL import Image
 
 from benchmarks.measuring.machine import commit, machine, versions
 from benchmarks.measuring.result_file import Record, as_json, write_result
-from benchmarks.measuring.target import Target
+from benchmarks.measuring.target import Asked, Target, asked_of_each
 from nispcodec.core.asset import Material, Texture, TextureMap
 from nispcodec.core.document import ChartTable, Document, Frame
 from nispcodec.core.network import Network, NetworkSpec
@@ -47,13 +47,19 @@ INFO: dict[str, str | int | float | bool] = {
 
 
 def targets(name: str) -> list[Target]:
-    """What issue 3 asks of a file of one material."""
+    """What is asked of a file of one material."""
     times = [
         Target("parse and verify, ms", ("verify_ms",), 20),
         Target("nisp info, ms", ("info_ms",), 400),
     ]
     overhead = Target("other bytes", ("besides_networks_and_images",), 256)
     return [overhead, *times] if name in WIDTHS else [overhead]
+
+
+def asked(results: Record) -> Iterator[Asked]:
+    """The targets of every file of one material in a result file."""
+    files = results["files"].items()
+    return asked_of_each({name: each for name, each in files if each["materials"] == 1}, targets)
 
 
 def made(width: int) -> bytes:
@@ -166,9 +172,8 @@ def main(models: tuple[Path, ...], output: Path | None) -> None:
     for name in WIDTHS:
         record["files"][name]["info_ms"] = info_ms(files[name])
     click.echo(as_json(record))
-    for name, found in record["files"].items():
-        for target in targets(name) if found["materials"] == 1 else []:
-            click.echo(target.line(name, found), err=True)
+    for each in asked(record):
+        click.echo(each.line(), err=True)
     if output is not None:
         write_result(output, record)
 

@@ -20,7 +20,7 @@ import click
 import nispcodec
 from benchmarks.measuring.model_records import measured, models_options
 from benchmarks.measuring.result_file import Record
-from benchmarks.measuring.target import Target
+from benchmarks.measuring.target import Asked, Target, asked_of_each
 from nispcodec import EncodeConfig
 from nispcodec.core.network import Network
 from nispcodec.encode import fitting
@@ -37,6 +37,11 @@ PLACES = {
     "uv mean": ("uv", "larger", "mean"),
 }
 TARGETS = [Target(f"{name}: after / before", ("ratios", name), 1.15) for name in PLACES]
+
+
+def asked(results: Record) -> Iterator[Asked]:
+    """The targets of every asset in a result file."""
+    return asked_of_each(results["assets"], lambda _: TARGETS)
 
 
 @contextmanager
