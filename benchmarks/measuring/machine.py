@@ -28,8 +28,7 @@ def versions() -> dict[str, str]:
     return {"python": platform.python_version()} | {name: version(name) for name in LIBRARIES}
 
 
-def commit() -> str:
-    """The checked-out commit, with `+changes` when tracked files differ from it."""
-    folder = Path(__file__).parent
-    asked = ["git", "-C", str(folder), "describe", "--always", "--abbrev=12", "--dirty=+changes"]
+def commit(tree: Path = Path(__file__).parent) -> str:
+    """The commit checked out in a tree, ours unless told, with `+changes` when files differ."""
+    asked = ["git", "-C", str(tree), "describe", "--always", "--abbrev=12", "--dirty=+changes"]
     return subprocess.run(asked, capture_output=True, text=True, check=True).stdout.strip()

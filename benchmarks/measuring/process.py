@@ -5,7 +5,7 @@ from __future__ import annotations
 import resource
 import subprocess
 import time
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -25,23 +25,35 @@ class Run:
     stdout: str
 
 
-def run(command: Sequence[str | Path], scratch: Path) -> Run:
+def run(
+    command: Sequence[str | Path], scratch: Path, environment: Mapping[str, str] | None = None
+) -> Run:
     """Run to the end; raises RuntimeError with the last words of stderr when it fails.
 
-    `scratch` is a folder for the output of the command, which could fill a pipe.
+    `scratch` is a folder for the output of the command, which could fill a pipe; `environment` is
+    what the command sees in place of our own.
     """
     out, err = scratch / "stdout", scratch / "stderr"
     started, cpu, peak = time.monotonic(), _children_seconds(), 0
     with out.open("wb") as stdout, err.open("wb") as stderr:
-        process = subprocess.Popen(list(map(str, command)), stdout=stdout, stderr=stderr)
-        while process.poll() is None:
+        words = list(map(str, command))
+        process = subprocess.Popen(words, stdout=stdout, stderr=stderr, env=environment)
+        while not _ends_within(process, INTERVAL):
             peak = max(peak, sum(map(proportional_bytes, family(process.pid))))
-            time.sleep(INTERVAL)
     seconds = time.monotonic() - started
     if process.returncode != 0:
         last = err.read_text(errors="replace")[-800:]
         raise RuntimeError(f"{' '.join(map(str, command))}: exit {process.returncode}: {last}")
     return Run(round(seconds, 2), round(_children_seconds() - cpu, 2), peak, out.read_text())
+
+
+def _ends_within(process: subprocess.Popen[bytes], seconds: float) -> bool:
+    """Whether it does; told as soon as it ends, so that times are not whole intervals."""
+    try:
+        process.wait(seconds)
+    except subprocess.TimeoutExpired:
+        return False
+    return True
 
 
 def _children_seconds() -> float:
