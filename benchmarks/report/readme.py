@@ -11,7 +11,6 @@ and the sizes of the other codecs.
 from __future__ import annotations
 
 import csv
-from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -21,6 +20,7 @@ from benchmarks.headline.duel import PRECISE
 from benchmarks.headline.duel import RESULTS as DUEL
 from benchmarks.headline.main_job import RESULTS
 from benchmarks.measuring.result_file import read_result, write_result
+from benchmarks.report.markdown import table
 from benchmarks.studies.crossover import RESULTS as CROSSOVER
 from nispcodec.core.atomic_write import write_atomic
 
@@ -120,11 +120,6 @@ def duel_cells(name: str, duel: dict[str, Any]) -> list[str]:
     rival, share = duel["rival_bytes"], duel["share"]["distance and uv"]
     sizes = [duel["bytes"], rival["distance"], rival["distance and uv"]]
     return [name, *map(kilobytes, sizes), "–" if share is None else f"{share:.2f}"]
-
-
-def table(head: Sequence[str], lines: Iterable[Sequence[str]]) -> str:
-    """A table of texts."""
-    return "".join(f"| {' | '.join(cells)} |\n" for cells in [head, ["---"] * len(head), *lines])
 
 
 def percentage(share: float | None) -> str:

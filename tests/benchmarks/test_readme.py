@@ -1,6 +1,7 @@
 from __future__ import annotations
 
-from benchmarks.report.readme import duel_cells, percentage, replaced, size_of, table
+from benchmarks.report.markdown import columns, table
+from benchmarks.report.readme import duel_cells, percentage, replaced, size_of
 
 
 def test_only_what_stands_between_the_markers_changes() -> None:
@@ -38,3 +39,7 @@ def test_a_delta_rate_is_a_share_more_or_less_or_a_dash() -> None:
 
 def test_a_table_has_a_rule_below_its_head() -> None:
     assert table(["a", "b"], [["1", "2"]]) == "| a | b |\n| --- | --- |\n| 1 | 2 |\n"
+
+
+def test_columns_are_as_wide_as_their_longest_text() -> None:
+    assert columns(["a", "b"], [["long", "1"], ["", ""]]) == "a     b\nlong  1\n\n"
