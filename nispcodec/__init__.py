@@ -1,8 +1,14 @@
-"""Neural codec for textured 3D assets.
+"""Neural codec for textured 3D assets: one mesh in, a few kilobytes of network weights out.
 
-model = nispcodec.encode(mesh)          a TexturedMesh to a NispModel (needs torch)
-nispcodec.save(model, "asset.nisp")
-model = nispcodec.load("asset.nisp")    queries and meshes need numpy alone
+    import nispcodec
+
+    model = nispcodec.encode("model.obj")       fit networks to an asset
+    nispcodec.save(model, "model.nisp")
+    model = nispcodec.load("model.nisp")        queries, meshes and pictures
+    model.sdf(points), model.uv(points), model.color(points)
+    nispcodec.write_mesh(model.to_mesh(), "out.glb")
+
+Everything that is public is here; what stands in the submodules may move.
 """
 
 from __future__ import annotations
@@ -10,13 +16,18 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+# `nispcodec.render` is a function here, and the folder has the same name: importing it later would
+# put the module in the function's place.
+import nispcodec.render  # noqa: F401
 from nispcodec.core.asset import Material, Texture, TexturedMesh, TextureMap
 from nispcodec.core.errors import FitError, FormatError, MeshError, NispError, QueryError
 from nispcodec.core.progress import Listener, Progress, silent
 from nispcodec.encode.config import EncodeConfig
 
 if TYPE_CHECKING:
+    from nispcodec.core.arrays import Float32Array
     from nispcodec.encode.config import Tuning
+    from nispcodec.metrics.compare import Report
     from nispcodec.model import NispModel
 
 __all__ = [
@@ -32,24 +43,61 @@ __all__ = [
     "Texture",
     "TextureMap",
     "TexturedMesh",
+    "compare",
     "encode",
     "load",
+    "load_mesh",
+    "render",
+    "retexture",
     "save",
+    "write_mesh",
 ]
 
 __version__ = "0.1.0"
 
 
+def load_mesh(path: str | Path) -> TexturedMesh:
+    """Read OBJ, glTF, GLB, PLY, STL or OFF with its materials and textures, cleaned up.
+
+    Positions are in the world frame, in the file's units; UVs have their origin bottom-left.
+    `warnings` of the mesh say what was left out or guessed. Raises MeshError, naming the file and
+    the place in it, for whatever cannot be read.
+    """
+    from nispcodec.io.load import load_mesh as read
+
+    return read(path)
+
+
+def write_mesh(mesh: TexturedMesh, path: str | Path) -> list[Path]:
+    """Write GLB, OBJ, PLY or STL, by the path's suffix -> the files written, `path` last.
+
+    Files are written whole or not at all. Raises MeshError for an unknown suffix or a mesh without
+    faces, NispError when writing fails.
+    """
+    from nispcodec.io.save import write_mesh as write
+
+    return write(mesh, path)
+
+
 def encode(
-    mesh: TexturedMesh,
+    mesh: TexturedMesh | str | Path,
     config: EncodeConfig | None = None,
     progress: Listener = silent,
     tuning: Tuning | None = None,
 ) -> NispModel:
-    """Fit networks to an asset; see `nispcodec.encode.recipe.encode`."""
+    """Fit networks to a mesh, or to the mesh in a file.
+
+    `progress` is called with each `Progress`. `tuning` holds numbers that are not meant to be
+    chosen by users (`nispcodec.encode.config`).
+
+    Each network has a process of its own. Outside of Linux, and with CUDA, these start afresh: a
+    script then wants `if __name__ == "__main__":` around its calls. Ctrl-C and errors leave nothing
+    behind. Raises TypeError for what is neither mesh nor path, MeshError when nothing of the mesh
+    can be held by a signed distance, FitError when a network does not converge.
+    """
     from nispcodec.encode import recipe
 
-    return recipe.encode(mesh, config, progress, tuning)
+    return recipe.encode(_mesh(mesh), config, progress, tuning)
 
 
 def load(path: str | Path) -> NispModel:
@@ -61,11 +109,67 @@ def load(path: str | Path) -> NispModel:
 
 
 def save(model: NispModel, path: str | Path) -> None:
-    """Write a `.nisp` file: whole, or not at all."""
+    """Write a `.nisp` file: whole, or not at all. Raises NispError when it cannot be written."""
     from nispcodec.core.atomic_write import write_atomic
     from nispcodec.format import pack
 
     write_atomic(Path(path), pack(model.document))
+
+
+def compare(
+    original: TexturedMesh | str | Path, decoded: NispModel | TexturedMesh | str | Path
+) -> Report:
+    """Distortion of a decode: distance, UV, color, charts, in the original's normalized frame.
+
+    A model is decoded as `NispModel.to_mesh` does, and asked for its charts too; see
+    `nispcodec.metrics.compare`. Raises MeshError when a mesh has no surface.
+    """
+    from nispcodec.metrics.compare import compare as compared
+    from nispcodec.model import NispModel
+
+    if isinstance(decoded, NispModel):
+        return compared(_mesh(original), decoded.to_mesh(), model=decoded)
+    return compared(_mesh(original), _mesh(decoded))
+
+
+def render(asset: NispModel | TexturedMesh, view: str = "30,20", size: int = 512) -> Float32Array:
+    """A picture (size, size, 4) float32 in [0, 1]: sRGB-encoded RGB, straight alpha, top row first.
+
+    A model is sphere-traced, a mesh is hit by rays. `view` is "front", "back", "left", "right",
+    "top", "bottom" or "azimuth,elevation" in degrees. Raises QueryError for another view.
+    """
+    from nispcodec.render.camera import view as camera
+    from nispcodec.render.views import render_views
+
+    return render_views(asset, [camera(view)], size)[0]
+
+
+def retexture(
+    model: NispModel, slot: str, image: str | Path, material: str | None = None
+) -> NispModel:
+    """The model with an image file in a slot of a material; its networks stay as they are.
+
+    Without `material` the image goes to the materials that have a texture there, which must share
+    it. Raises NispError for a slot or material that is not there, and for an unreadable image.
+    """
+    from nispcodec.edit.retexture import retextured
+    from nispcodec.model import NispModel
+
+    path = Path(image)
+    try:
+        data = path.read_bytes()
+    except OSError as why:
+        raise NispError(f"{path}: cannot be read: {why.strerror}") from why
+    return NispModel(retextured(model.document, slot, data, path.name, material)[0])
+
+
+def _mesh(given: object) -> TexturedMesh:
+    if isinstance(given, str | Path):
+        return load_mesh(given)
+    if not isinstance(given, TexturedMesh):
+        found = type(given).__name__
+        raise TypeError(f"expected a TexturedMesh or the path of a mesh file, found {found}")
+    return given
 
 
 def __getattr__(name: str) -> object:

@@ -89,9 +89,8 @@ class PointObjective(UvObjective):
 
 def baselines(mesh: TexturedMesh, model: NispModel, seed: int, threads: int) -> dict[str, Network]:
     """The networks "unconditioned" and "color", fitted."""
-    random = np.random.default_rng(seed)
-    analysis = analyze(mesh, random)
-    sets = training_sets(Sampler(analysis, random))
+    analysis = analyze(mesh, seed)
+    sets = training_sets(Sampler(analysis, seed))
     surface = Surface.of(mesh, analysis.frame)
     specs = {name: model.document.networks[name].spec for name in _UV}
     plain = replace(specs["uv"], conditioning="none", charts=0, embedding=0)

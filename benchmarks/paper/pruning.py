@@ -62,9 +62,8 @@ class AbsoluteUv(UvObjective):
 
 def paper_networks(path: Path, steps: int) -> list[Task]:
     """The chart and the UV network with the paper's losses, optimizer and rates."""
-    random = np.random.default_rng(SEED)
-    analysis = analyze(load_mesh(path), random, GeometryConfig(merging=None))
-    sampler = Sampler(analysis, random)
+    analysis = analyze(load_mesh(path), SEED, GeometryConfig(merging=None))
+    sampler = Sampler(analysis, SEED)
     samples, surface = sampler.importance(SAMPLES), sampler.surface(TEST)
     near = sampler.near_surface(1, SamplingConfig.uv_spread)
     sets = TrainingSets(samples, samples, samples, near, surface, samples[:0])

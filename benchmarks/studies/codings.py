@@ -16,7 +16,8 @@ from benchmarks.measuring.machine import commit
 from benchmarks.measuring.result_file import write_result
 from nispcodec.core.network import Network, NetworkSpec
 from nispcodec.format import weights
-from nispcodec.format.constants import CODINGS, NETS
+from nispcodec.format.codings.registry import CODINGS
+from nispcodec.format.constants import NETS
 from nispcodec.format.container import read_container, write_container
 
 DEEP = (64,) * 8

@@ -14,7 +14,7 @@ import numpy as np
 
 from nispcodec.core.document import Document
 from nispcodec.extract.components import without_noise
-from nispcodec.extract.grid import LIMIT
+from nispcodec.extract.grid import CUBE
 from nispcodec.extract.isosurface import extract
 from nispcodec.extract.meshing import default_resolution, textured_mesh
 from nispcodec.format import unpack
@@ -48,7 +48,7 @@ def dense(document: Document, resolution: int) -> dict[str, float]:
     from skimage.measure import marching_cubes
 
     started = time.perf_counter()
-    axis = np.linspace(-LIMIT, LIMIT, resolution + 1, dtype=np.float32)
+    axis = np.linspace(-CUBE, CUBE, resolution + 1, dtype=np.float32)
     grid = np.stack(np.meshgrid(axis, axis, axis, indexing="ij"), axis=-1).reshape(-1, 3)
     values = evaluate(document.sdf, grid).reshape((resolution + 1,) * 3)
     faces = marching_cubes(values, 0.0)[1]  # type: ignore[no-untyped-call]

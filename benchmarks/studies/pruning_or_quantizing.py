@@ -61,9 +61,8 @@ SAMPLER_SEED = 0
 
 def networks(path: Path, steps: int) -> dict[str, Task]:
     """SDF 4 x 32 and UV 3 x 24, with the samples of the default preset."""
-    random = np.random.default_rng(SAMPLER_SEED)
-    analysis = analyze(load_mesh(path), random)
-    sets, charts = training_sets(Sampler(analysis, random)), len(analysis.table)
+    analysis = analyze(load_mesh(path), SAMPLER_SEED)
+    sets, charts = training_sets(Sampler(analysis, SAMPLER_SEED)), len(analysis.table)
     sdf = NetworkSpec((32,) * 4, 1)
     uv = NetworkSpec((24,) * 3, 2, conditioning="chart_affine", charts=charts, embedding=4)
     distance, surface = (sets.distance, sets.held_out_distance), (sets.uvs, sets.held_out_surface)

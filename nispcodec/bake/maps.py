@@ -7,15 +7,13 @@ from __future__ import annotations
 
 import numpy as np
 
-from nispcodec.bake.tangents import Frames
+from nispcodec.bake.tangents import TangentFrames
 from nispcodec.core.arrays import Float32Array, Float64Array, Int32Array
-from nispcodec.core.asset import SLOTS, Material
+from nispcodec.core.asset import Material
+from nispcodec.core.slots import BY_NAME, SLOTS
 from nispcodec.core.texture import decode_image, linear_to_srgb, sample_texture, srgb_to_linear
 from nispcodec.model import NispModel
 
-# What a material shows without a texture: glTF's factors times white; a flat normal.
-BLANK = {"normal": (0.5, 0.5, 1.0, 1.0)}
-WHITE = (1.0, 1.0, 1.0, 1.0)
 # How far to go, in radii, to see which way a UV grows.
 STEP = 2e-3
 
@@ -26,7 +24,9 @@ def further_slots(model: NispModel) -> tuple[str, ...]:
     return tuple(slot for slot in SLOTS[1:] if any(slot in each.maps for each in materials))
 
 
-def baked_maps(model: NispModel, points: Float64Array, frames: Frames) -> dict[str, Float32Array]:
+def baked_maps(
+    model: NispModel, points: Float64Array, frames: TangentFrames
+) -> dict[str, Float32Array]:
     """Texels (n, 3) in [0, 1], as stored in images, of every further slot at world points (n, 3).
 
     Normals are turned from the directions of the old UVs into those of `frames`.
@@ -44,7 +44,7 @@ def _texels(model: NispModel, slot: str, charts: Int32Array, uvs: Float32Array) 
     document = model.document
     has_uv, owners = document.charts.has_uv[charts], document.charts.materials[charts]
     texels = np.empty((len(charts), 3), np.float32)
-    texels[:] = BLANK.get(slot, WHITE)[:3]
+    texels[:] = BY_NAME[slot].blank[:3]
     for number in np.unique(owners).tolist():
         material = document.materials[number]
         used = material.maps.get(slot)
@@ -74,7 +74,7 @@ def _turned(
     normals: Float32Array,
     points: Float64Array,
     charts: Int32Array,
-    frames: Frames,
+    frames: TangentFrames,
 ) -> Float32Array:
     """Normals (n, 3) of the old tangent space in the new one: both lie in the same plane.
 

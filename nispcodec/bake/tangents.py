@@ -12,7 +12,7 @@ from nispcodec.io.write.vertices import vertex_normals
 
 
 @dataclass(frozen=True)
-class Frames:
+class TangentFrames:
     """Unit directions (n, 3) on the surface, square to the smooth normal and to each other.
 
     tangents: u grows; bitangents: v grows, v upwards in the image as in OBJ.
@@ -22,7 +22,7 @@ class Frames:
     bitangents: Float64Array
 
 
-def frames_at(mesh: TexturedMesh, faces: Int32Array, weights: Float64Array) -> Frames:
+def frames_at(mesh: TexturedMesh, faces: Int32Array, weights: Float64Array) -> TangentFrames:
     """The frames at barycentric `weights` (n, 3) in `faces` (n,), all of which have UVs.
 
     Directions of u are averaged over the faces that share a UV and made square to the averaged
@@ -35,7 +35,7 @@ def frames_at(mesh: TexturedMesh, faces: Int32Array, weights: Float64Array) -> F
     normal = _unit(np.einsum("nc,ncd->nd", weights, normals))
     tangent = np.einsum("nc,ncd->nd", weights, sums[mesh.uv_faces[faces]])
     tangent = _unit(tangent - (tangent * normal).sum(axis=1, keepdims=True) * normal)
-    return Frames(tangent, np.cross(normal, tangent) * mirrored[faces][:, None])
+    return TangentFrames(tangent, np.cross(normal, tangent) * mirrored[faces][:, None])
 
 
 def _directions(mesh: TexturedMesh) -> tuple[Float64Array, Float64Array]:

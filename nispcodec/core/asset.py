@@ -8,17 +8,16 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from pathlib import Path
 
 import numpy as np
 
-from nispcodec.core.arrays import AnyArray, BoolArray, Float64Array, Int32Array
+from nispcodec.core.arrays import AnyArray, BoolArray, Float64Array, Int32Array, IntArray
 from nispcodec.core.errors import MeshError
 
-SLOTS = ("base_color", "normal", "metallic_roughness", "occlusion", "emissive")
 WRAPS = ("repeat", "clamp", "mirror")
 FILTERS = ("linear", "nearest")
 ALPHA_MODES = ("opaque", "mask", "blend")
-SRGB_SLOTS = frozenset({"base_color", "emissive"})
 MIME_TYPES = ("image/png", "image/jpeg", "image/webp", "image/avif")
 
 
@@ -95,6 +94,24 @@ class TexturedMesh:
         _expect_range("faces", self.faces, 0, len(self.positions))
         _expect_range("uv_faces", self.uv_faces, -1, len(self.uvs))
         _expect_range("face_materials", self.face_materials, 0, len(self.materials))
+
+    def save(self, path: str | Path) -> list[Path]:
+        """Write the mesh in the format of the path's suffix; see `nispcodec.write_mesh`."""
+        from nispcodec.io.save import write_mesh
+
+        return write_mesh(self, path)
+
+    @staticmethod
+    def geometry_only(positions: Float64Array, faces: IntArray, name: str) -> TexturedMesh:
+        """A mesh of positions (n, 3) and faces (m, 3) without UVs, of one material."""
+        return TexturedMesh(
+            positions=positions,
+            faces=faces.astype(np.int32),
+            uvs=np.zeros((0, 2)),
+            uv_faces=np.full(faces.shape, -1, dtype=np.int32),
+            face_materials=np.zeros(len(faces), dtype=np.int32),
+            name=name,
+        )
 
     @property
     def corners(self) -> Float64Array:

@@ -11,7 +11,7 @@ from nispcodec.core.sample_set import SampleSet
 from nispcodec.dataset.chart_error_weight import chart_error_weight
 from nispcodec.dataset.config import SamplingConfig
 from nispcodec.dataset.texture_gradient import texture_gradient
-from nispcodec.geometry.analysis import CUBE, Analysis
+from nispcodec.geometry.analysis import Analysis
 from nispcodec.geometry.openings import spread_over
 from nispcodec.geometry.solid import area, normals
 from nispcodec.geometry.surface_points import (
@@ -30,13 +30,11 @@ class Sampler:
     """Draws and labels points around one analyzed asset; all in the normalized frame."""
 
     def __init__(
-        self,
-        analysis: Analysis,
-        random: np.random.Generator,
-        config: SamplingConfig = SamplingConfig(),
+        self, analysis: Analysis, seed: int = 0, config: SamplingConfig = SamplingConfig()
     ) -> None:
         self.analysis, self.config = analysis, config
-        self._random, self._label = random, analysis.label
+        # Other numbers than the analysis has: what it asks at random changes no sample.
+        self._random, self._label = np.random.default_rng([seed, 1]), analysis.label
 
     def near_surface(self, count: int, spread: float, signed: bool = True) -> SampleSet:
         """About `count` samples whose |SDF| has the mean `spread`: `laplace_offsets`.
@@ -73,8 +71,9 @@ class Sampler:
         return self._label(self._beside(again, spread))
 
     def cube(self, count: int) -> SampleSet:
-        """`count` samples uniform in the cube [-CUBE, CUBE]^3."""
-        return self._label(self._random.uniform(-CUBE, CUBE, size=(count, 3)))
+        """`count` samples uniform in the cube that anybody asks about."""
+        half = self.analysis.config.cube
+        return self._label(self._random.uniform(-half, half, size=(count, 3)))
 
     def importance(self, count: int) -> SampleSet:
         """The paper's sampler: uniform in the unit ball, kept with weight exp(-beta |SDF|)."""
@@ -136,4 +135,4 @@ class Sampler:
         return samples[self._random.choice(len(samples), count, p=weight / weight.sum())]
 
     def _beside(self, surface: Float64Array, spread: float) -> Float64Array:
-        return laplace_offsets(self._random, surface, spread, CUBE)
+        return laplace_offsets(self._random, surface, spread, self.analysis.config.cube)

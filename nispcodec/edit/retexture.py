@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from nispcodec.core.asset import SLOTS, Material, Texture
+from nispcodec.core.asset import Material, Texture
 from nispcodec.core.document import Document
 from nispcodec.core.errors import NispError
+from nispcodec.core.slots import SLOTS
 from nispcodec.io.images import TextureShelf
 
 

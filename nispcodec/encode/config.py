@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+import re
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
@@ -15,7 +16,8 @@ from nispcodec.train.config import TrainConfig
 if TYPE_CHECKING:
     from nispcodec.train.prune import Pruning
 
-PRESETS = ("balanced", "paper", "fast", "best")
+TEXTURE_FORMATS = ("webp", "avif", "jpeg")
+PRESETS = (*TrainConfig().budgets, "paper")
 
 
 @dataclass(frozen=True)
@@ -52,10 +54,14 @@ class EncodeConfig:
     prune_rounds: int = 2
 
     def __post_init__(self) -> None:
-        if self.preset not in PRESETS:
-            raise NispError(f"preset: expected one of {', '.join(PRESETS)}, found {self.preset!r}")
-        if self.seed < 0 or self.threads < 0:
-            raise NispError("seed and threads: expected 0 or more")
+        _expect_member("preset", self.preset, PRESETS)
+        if self.texture_format is not None:
+            _expect_member("texture format", self.texture_format, TEXTURE_FORMATS)
+        _expect_within("texture quality", self.texture_quality, 1, 100)
+        _expect_within("seed", self.seed, 0, None)
+        _expect_within("threads", self.threads, 0, None)
+        if not re.fullmatch(r"auto|cpu|cuda(:\d+)?", self.device):
+            raise NispError(f"device: expected auto, cpu, cuda or cuda:N, found {self.device!r}")
         targets = [each for each in (self.target_size, self.target_error) if each is not None]
         if len(targets) > 1 or (targets and self.preset == "paper"):
             raise NispError("target size, target error, preset paper: expected one of them")
@@ -68,6 +74,19 @@ class EncodeConfig:
         from nispcodec.train.prune import prunings
 
         return prunings(self.prune, self.prune_rate, self.prune_rounds) if self.prune else {}
+
+
+def _expect_member(name: str, found: str, members: Sequence[str]) -> None:
+    if found not in members:
+        raise NispError(f"{name}: expected one of {', '.join(members)}, found {found!r}")
+
+
+def _expect_within(name: str, found: int, low: int, high: int | None) -> None:
+    if isinstance(found, bool) or not isinstance(found, int):
+        raise NispError(f"{name}: expected a whole number, found {found!r}")
+    if found < low or (high is not None and found > high):
+        span = f"{low} to {high}" if high is not None else f"{low} or more"
+        raise NispError(f"{name}: expected {span}, found {found}")
 
 
 @dataclass(frozen=True)

@@ -5,8 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import replace
 
-import numpy as np
-
 from nispcodec.core.asset import TexturedMesh
 from nispcodec.core.document import Document
 from nispcodec.core.network import Network
@@ -37,12 +35,11 @@ def encode(
     network does not converge.
     """
     config, tuning = config or EncodeConfig(), tuning or Tuning()
-    random = np.random.default_rng(config.seed)
     materials, textures = appearance(mesh, config, progress)
     progress(Progress(stage="charts and hidden walls"))
-    analysis = analyze(mesh, random, tuning.geometry_of(config.preset))
+    analysis = analyze(mesh, config.seed, tuning.geometry_of(config.preset))
     progress(Progress(stage="samples"))
-    sampler = Sampler(analysis, random, tuning.sampling)
+    sampler = Sampler(analysis, config.seed, tuning.sampling)
     sets = (paper_training_sets if config.preset == "paper" else training_sets)(sampler)
 
     def document(networks: Mapping[str, Network]) -> Document:

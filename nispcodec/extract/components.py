@@ -3,7 +3,7 @@
 A fitted SDF may cross zero where there is no surface, far from its training samples. Such a
 crossing gives itself away: it lies outside the normalized frame's unit ball, or the field around it
 is no distance field and it is steep, or tiny and far from everything else. Tiny pieces beside
-others are what is left of straps and wires, but for crumbs of a single cell. A small hollow that
+others are what is left of straps and wires, but for those of a single cell. A small hollow that
 nothing leads into is dropped as well: nobody can see into it.
 """
 
@@ -18,22 +18,10 @@ from scipy.spatial import KDTree
 
 from nispcodec.core.arrays import BoolArray, Float32Array, Float64Array, Int32Array, Int64Array
 from nispcodec.core.network import Network
-from nispcodec.extract.grid import LIMIT
-from nispcodec.extract.isosurface import OUTSIDE, Surface
+from nispcodec.extract.config import ComponentConfig
+from nispcodec.extract.grid import CUBE
+from nispcodec.extract.isosurface import BALL, Surface
 from nispcodec.infer.evaluate import gradient
-
-# Slopes are relative to the whole surface's. Noise between the samples was seen at 3 to 7. Flat
-# pieces are mostly scraps of real detail that the fit could not hold: only lonely specks are
-# dropped.
-STEEP, SMALL_SHARE = 1.7, 0.05
-FLAT, SPECK_AREA, LONELY = 0.6, 3e-3, 0.02
-# Vertices of a flat piece about one cell, of which the grid tells no shape: meshes go without. Rays
-# do not, as what is left out for them is left out by larger cells.
-CRUMB = 8
-# Vertices of which one is near any place on the surface, a quarter of `LONELY` or less away.
-MANY = 200_000
-HOLLOW_SHARE = 0.03
-SOME = 20_000
 
 
 @dataclass(frozen=True)
@@ -54,16 +42,19 @@ class ExtractionReport:
 
 
 def without_noise(
-    network: Network, surface: Surface, keep: bool = False
+    network: Network,
+    surface: Surface,
+    keep: bool = False,
+    config: ComponentConfig = ComponentConfig(),
 ) -> tuple[Surface, ExtractionReport]:
     """The surface without spurious components, unless they are to be kept, and the counts."""
-    unwanted, labels = spurious(network, surface)
-    unwanted |= _crumbs(network, surface, labels, len(unwanted))
+    unwanted, labels = spurious(network, surface, config)
+    unwanted |= _single_cells(network, surface, labels, len(unwanted), config)
     if keep:
         unwanted[:] = False
     cleaned = without(surface, unwanted, labels)
     report = ExtractionReport(
-        resolution=round(2 * LIMIT / surface.cell),
+        resolution=round(2 * CUBE / surface.cell),
         kept=int((~unwanted).sum()),
         dropped=int(unwanted.sum()),
         dropped_faces=len(surface.faces) - len(cleaned.faces),
@@ -81,11 +72,14 @@ def components(surface: Surface) -> tuple[int, Int32Array]:
     return count, labels.astype(np.int32)
 
 
-def spurious(network: Network, surface: Surface) -> tuple[BoolArray, Int32Array]:
+def spurious(
+    network: Network, surface: Surface, config: ComponentConfig = ComponentConfig()
+) -> tuple[BoolArray, Int32Array]:
     """Which components are noise (c,) bool, and the component of each vertex (n,).
 
     A component is noise when all of it lies outside the unit ball, when it is small and the field
-    is steep on it, when it is a lonely speck and the field is flat, or when it is a small hollow.
+    is steep on it, when it is small and isolated and the field is flat, or when it is a small
+    hollow.
     """
     count, labels = components(surface)
     if count < 2:
@@ -93,37 +87,43 @@ def spurious(network: Network, surface: Surface) -> tuple[BoolArray, Int32Array]
     nearest = np.full(count, np.inf)
     np.minimum.at(nearest, labels, np.linalg.norm(surface.positions, axis=1))
     vertices = np.bincount(labels, minlength=count)
-    slope = _mean_slopes(network, surface, labels, vertices)
-    flat = _lonely(surface, labels, (slope < FLAT) & (vertices * surface.cell**2 < SPECK_AREA))
-    hollow = _volumes(surface, labels, vertices < HOLLOW_SHARE * len(labels)) < 0
-    return (nearest > OUTSIDE) | (slope > STEEP) | flat | hollow, labels
+    slope = _mean_slopes(network, surface, labels, vertices, config)
+    small = vertices * surface.cell**2 < config.small_area
+    flat = _isolated(surface, labels, (slope < config.flat) & small, config)
+    hollow = _volumes(surface, labels, vertices < config.hollow_share * len(labels)) < 0
+    return (nearest > BALL) | (slope > config.steep) | flat | hollow, labels
 
 
-def _crumbs(network: Network, surface: Surface, labels: Int32Array, count: int) -> BoolArray:
+def _single_cells(
+    network: Network, surface: Surface, labels: Int32Array, count: int, config: ComponentConfig
+) -> BoolArray:
     """Which of several components (c,) bool are flat and of a single cell."""
     vertices = np.bincount(labels, minlength=count)
-    crumbs: BoolArray = (vertices <= CRUMB) & (count > 1)
-    if crumbs.any():
-        crumbs &= _mean_slopes(network, surface, labels, vertices) < FLAT
-    return crumbs
+    single: BoolArray = (vertices <= config.single_cell) & (count > 1)
+    if single.any():
+        single &= _mean_slopes(network, surface, labels, vertices, config) < config.flat
+    return single
 
 
-def _lonely(surface: Surface, labels: Int32Array, specks: BoolArray) -> BoolArray:
-    """Of some components (c,) bool those with no other component within `LONELY`."""
-    apart = specks[labels]
+def _isolated(
+    surface: Surface, labels: Int32Array, small: BoolArray, config: ComponentConfig
+) -> BoolArray:
+    """Of some components (c,) bool those with no other component near."""
+    apart = small[labels]
     members, points = labels[apart], surface.positions[apart]
     others = surface.positions[~apart]
-    others = others[:: 1 + len(others) // MANY]
-    near = np.isfinite(KDTree(others).query(points, distance_upper_bound=LONELY)[0])
-    counts = np.maximum(np.bincount(members, minlength=len(specks)), 1)
-    sums = [np.bincount(members, axis, len(specks)) for axis in points.T]
-    centers = np.stack(sums, axis=1)[specks] / counts[specks, None]
-    # The nearest center is a speck's own.
+    others = others[:: 1 + len(others) // config.neighbor_vertices]
+    tree = KDTree(others)
+    near = np.isfinite(tree.query(points, distance_upper_bound=config.isolated)[0])
+    counts = np.maximum(np.bincount(members, minlength=len(small)), 1)
+    sums = [np.bincount(members, axis, len(small)) for axis in points.T]
+    centers = np.stack(sums, axis=1)[small] / counts[small, None]
+    # The nearest center is a component's own.
     gaps = KDTree(centers).query(centers, k=2)[0][:, 1]
-    lonely = specks.copy()
-    lonely[members[near]] = False
-    lonely[np.flatnonzero(specks)[gaps <= LONELY]] = False
-    return lonely
+    isolated = small.copy()
+    isolated[members[near]] = False
+    isolated[np.flatnonzero(small)[gaps <= config.isolated]] = False
+    return isolated
 
 
 def _volumes(surface: Surface, labels: Int32Array, small: BoolArray) -> Float64Array:
@@ -135,13 +135,17 @@ def _volumes(surface: Surface, labels: Int32Array, small: BoolArray) -> Float64A
 
 
 def _mean_slopes(
-    network: Network, surface: Surface, labels: Int32Array, vertices: Int64Array
+    network: Network,
+    surface: Surface,
+    labels: Int32Array,
+    vertices: Int64Array,
+    config: ComponentConfig,
 ) -> Float64Array:
     """Mean slope of the field on each small component, relative to the whole; 1 on large ones."""
-    small = vertices < SMALL_SHARE * len(labels)
+    small = vertices < config.small_share * len(labels)
     chosen = np.flatnonzero(small[labels])
     totals = np.bincount(labels[chosen], _slopes(network, surface, chosen), minlength=len(small))
-    some = np.arange(0, len(labels), 1 + len(labels) // SOME)
+    some = np.arange(0, len(labels), 1 + len(labels) // config.slope_samples)
     whole = np.median(_slopes(network, surface, some))
     return np.where(small, totals / vertices / whole, 1.0)
 

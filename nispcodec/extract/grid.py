@@ -13,21 +13,21 @@ from nispcodec.core.arrays import BoolArray, Float32Array, Int32Array, Int64Arra
 from nispcodec.core.network import Network
 from nispcodec.extract.marching_cubes import CORNERS
 from nispcodec.infer.evaluate import evaluate
-from nispcodec.infer.parallel import on_every_core
+from nispcodec.infer.parallel import parallel_for
 
-# The cube reaches from -LIMIT to LIMIT in the normalized frame.
-LIMIT = 1.02
+# The cube reaches from -CUBE to CUBE in the normalized frame.
+CUBE = 1.02
 BLOCK = 2
 # Blocks, or points, that are dealt with at a time: it bounds memory and stays in a core's cache.
-TOGETHER = 1 << 15
+CHUNK = 1 << 15
 # The points that a block owns: their numbers, and their places by number.
 OWN_POINTS = np.arange(BLOCK**3, dtype=np.int32).reshape((BLOCK,) * 3)
 OWN = np.indices(OWN_POINTS.shape).reshape(3, -1).T
 
 
-def together(count: int) -> list[slice]:
+def chunks(count: int) -> list[slice]:
     """The parts in which so many blocks or points are dealt with."""
-    return [slice(start, start + TOGETHER) for start in range(0, count, TOGETHER)]
+    return [slice(start, start + CHUNK) for start in range(0, count, CHUNK)]
 
 
 class Grid:
@@ -57,7 +57,7 @@ class Grid:
                 values[mine] = self._field[:, *theirs][owner[part]]
                 points[mine] = BLOCK**3 * owner[part, None, None, None] + OWN_POINTS[theirs]
 
-        on_every_core(take, together(len(blocks)))
+        parallel_for(take, chunks(len(blocks)))
         return values, points
 
     def has_sampled(self, blocks: Int64Array) -> BoolArray:
@@ -83,10 +83,10 @@ class Grid:
         def ask(part: slice) -> None:
             number, inner = np.divmod(asked[part], BLOCK**3)
             grid = self._numbering.blocks[number] * BLOCK + OWN[inner]
-            points = (grid * self._cell - LIMIT).astype(np.float32)
+            points = (grid * self._cell - CUBE).astype(np.float32)
             field[asked[part]] = evaluate(self._network, points)[:, 0]
 
-        on_every_core(ask, together(len(asked)))
+        parallel_for(ask, chunks(len(asked)))
 
 
 def _taken(corner: Int64Array) -> tuple[slice, ...]:
@@ -124,7 +124,7 @@ class _Numbering:
             octets = self._octets[*(wanted[part] >> 1).T]
             numbers[part] = self._members[octets, *(wanted[part] & 1).T]
 
-        on_every_core(look_up, together(len(wanted)))
+        parallel_for(look_up, chunks(len(wanted)))
         return numbers
 
     def _add_octets(self, wanted: Int64Array) -> None:

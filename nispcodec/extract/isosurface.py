@@ -21,19 +21,15 @@ from nispcodec.core.arrays import (
     Uint32Array,
 )
 from nispcodec.core.network import Network
-from nispcodec.extract.grid import BLOCK, LIMIT, Grid, together
+from nispcodec.extract.config import IsosurfaceConfig
+from nispcodec.extract.grid import BLOCK, CUBE, Grid, chunks
 from nispcodec.extract.marching_cubes import CORNERS, EDGES, polygonize
 from nispcodec.extract.newton import onto_surface
 from nispcodec.infer.evaluate import evaluate, gradient
-from nispcodec.infer.parallel import on_every_core
+from nispcodec.infer.parallel import parallel_for
 
-# Nothing of the asset is outside of this ball.
-OUTSIDE = 1.01
-ROOT = 32
-MARGIN = 1.25
-NEWTON_STEPS = 2
-# Vertices keep this share of a cell from grid points, where several would coincide.
-CLEARANCE = 0.01
+# Nothing of the asset is outside of the ball of this radius.
+BALL = 1.01
 # From a grid point of a block to the next along each axis.
 STRIDES = np.array([(BLOCK + 1) ** 2, BLOCK + 1, 1])
 # Of each edge of a cell: from the cell's first corner to its low end, and its axis.
@@ -50,36 +46,42 @@ class Surface:
     cell: float
 
 
-def extract(network: Network, resolution: int) -> Surface:
+def extract(
+    network: Network, resolution: int, config: IsosurfaceConfig = IsosurfaceConfig()
+) -> Surface:
     """The zero set of the SDF network in the cube [-1.02, 1.02]^3 of the normalized frame.
 
     `resolution` is the least number of cells along an edge of the cube: it is rounded up, by an
     eighth at most, so that blocks halve evenly and none reaches out of the cube.
     """
-    root, levels, cell = _grid(resolution)
-    kept = _surface_blocks(network, root, levels, cell)
+    root, levels, cell = _grid(resolution, config)
+    kept = _surface_blocks(network, root, levels, cell, config)
     blocks, values, points = _sampled(Grid(network, root * 2**levels, cell), kept)
     places, axes, faces = _polygons(values, points)
-    crossings = _crossings(blocks, values.ravel(), places, axes, cell)
-    return Surface(onto_surface(network, crossings, cell / 2, NEWTON_STEPS), faces, cell)
+    crossings = _crossings(blocks, values.ravel(), places, axes, cell, config.clearance)
+    return Surface(onto_surface(network, crossings, cell / 2, config.newton_steps), faces, cell)
 
 
-def near_surface(network: Network, resolution: int) -> tuple[Float32Array, float]:
+def near_surface(
+    network: Network, resolution: int, config: IsosurfaceConfig = IsosurfaceConfig()
+) -> tuple[Float32Array, float]:
     """Centers (b, 3) of the blocks that `extract` would look into, and the blocks' size."""
-    root, levels, cell = _grid(resolution)
-    blocks = _surface_blocks(network, root, levels, cell)
+    root, levels, cell = _grid(resolution, config)
+    blocks = _surface_blocks(network, root, levels, cell, config)
     return _centers(blocks, BLOCK * cell), BLOCK * cell
 
 
-def _grid(resolution: int) -> tuple[int, int, float]:
+def _grid(resolution: int, config: IsosurfaceConfig) -> tuple[int, int, float]:
     """Blocks along the cube at first, how often they are halved, and the size of a cell."""
     across = -(-resolution // BLOCK)
-    levels = max(0, int(np.ceil(np.log2(across / ROOT))))
+    levels = max(0, int(np.ceil(np.log2(across / config.root))))
     root = -(-across // 2**levels)
-    return root, levels, 2 * LIMIT / (root * 2**levels * BLOCK)
+    return root, levels, 2 * CUBE / (root * 2**levels * BLOCK)
 
 
-def _surface_blocks(network: Network, root: int, levels: int, cell: float) -> Int64Array:
+def _surface_blocks(
+    network: Network, root: int, levels: int, cell: float, config: IsosurfaceConfig
+) -> Int64Array:
     """Integer coordinates (b, 3) of the blocks of BLOCK^3 cells that may hold surface.
 
     A block is halved and kept while the field at its center is no larger than it may become over
@@ -95,7 +97,7 @@ def _surface_blocks(network: Network, root: int, levels: int, cell: float) -> In
         if level == levels:
             bound = _steepness(network, centers)
         distance = np.abs(evaluate(network, centers)[:, 0])
-        near = distance <= bound * size / 2 * (MARGIN * np.sqrt(3) if level else 1)
+        near = distance <= bound * size / 2 * (config.margin * np.sqrt(3) if level else 1)
         blocks = blocks[near]
         if level:
             bound = _steepness(network, centers[near])
@@ -104,7 +106,7 @@ def _surface_blocks(network: Network, root: int, levels: int, cell: float) -> In
 
 
 def _centers(blocks: Int64Array, size: float) -> Float32Array:
-    return ((blocks + 0.5) * size - LIMIT).astype(np.float32)
+    return ((blocks + 0.5) * size - CUBE).astype(np.float32)
 
 
 def _lattice(count: int) -> Int64Array:
@@ -137,7 +139,7 @@ def _behind(grid: Grid, blocks: Int64Array, values: Float32Array) -> Int64Array:
     def look(part: slice) -> None:
         inside[part] = _bits((values[part] < 0).reshape(-1, (BLOCK + 1) ** 3))
 
-    on_every_core(look, together(len(values)))
+    parallel_for(look, chunks(len(values)))
     corners = _lattice(BLOCK + 1)
     beyond = []
     for axis in range(3):
@@ -165,7 +167,7 @@ def _polygons(values: Float32Array, points: Int32Array) -> tuple[Int64Array, Int
     edge in several cells.
     """
     table = np.zeros(3 * (int(points.max(initial=0)) + 1), np.int32)
-    parts = together(len(values))
+    parts = chunks(len(values))
     edges = [np.empty((0, 3), np.int32)] * max(1, len(parts))
 
     def find(number: int) -> None:
@@ -179,11 +181,11 @@ def _polygons(values: Float32Array, points: Int32Array) -> tuple[Int64Array, Int
     def renumber(number: int) -> None:
         edges[number] = table[edges[number]]
 
-    on_every_core(find, range(len(parts)))
+    parallel_for(find, range(len(parts)))
     crossed = np.flatnonzero(table)
     lowest = table[crossed] - 1
     table[crossed] = np.arange(len(crossed))
-    on_every_core(renumber, range(len(parts)))
+    parallel_for(renumber, range(len(parts)))
     return lowest.astype(np.int64), (crossed % 3).astype(np.int8), np.concatenate(edges)
 
 
@@ -212,7 +214,12 @@ def _first_corners(cells: Int64Array) -> Int64Array:
 
 
 def _crossings(
-    blocks: Int64Array, values: Float32Array, places: Int64Array, axes: Int8Array, cell: float
+    blocks: Int64Array,
+    values: Float32Array,
+    places: Int64Array,
+    axes: Int8Array,
+    cell: float,
+    clearance: float,
 ) -> Float32Array:
     """Where the field crosses zero along each edge, if it were linear."""
     lattice = _lattice(BLOCK + 1)
@@ -223,8 +230,8 @@ def _crossings(
         low, high = values[lows], values[lows + STRIDES[along]]
         block, inner = np.divmod(lows, (BLOCK + 1) ** 3)
         grid = (blocks[block] * BLOCK + lattice[inner]).astype(np.float64)
-        grid[np.arange(len(grid)), along] += np.clip(low / (low - high), CLEARANCE, 1 - CLEARANCE)
-        found[part] = grid * cell - LIMIT
+        grid[np.arange(len(grid)), along] += np.clip(low / (low - high), clearance, 1 - clearance)
+        found[part] = grid * cell - CUBE
 
-    on_every_core(cross, together(len(places)))
+    parallel_for(cross, chunks(len(places)))
     return found

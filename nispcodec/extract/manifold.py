@@ -11,26 +11,25 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
 from nispcodec.core.arrays import BoolArray, Float64Array, Int32Array, Int64Array
+from nispcodec.extract.config import SimplifyConfig
 from nispcodec.extract.isosurface import Surface
-
-# How far the copies of a vertex draw back to their own faces, as a share of these faces' size.
-RETREAT = 1e-3
 
 Twins = tuple[Int64Array, Int64Array]
 
 
-def manifold(surface: Surface) -> Surface:
+def manifold(surface: Surface, retreat: float = SimplifyConfig.retreat) -> Surface:
     """The closed, oriented surface, every edge with two faces and one fan of faces at every vertex.
 
     A vertex gets one copy for each sheet that passes through it. Two vertices that are joined by
-    two edges, as across a tunnel pinched shut, get a vertex in the middle of each.
+    two edges, as across a tunnel pinched shut, get a vertex in the middle of each. Copies draw back
+    to their own faces by `retreat`, a share of these faces' size.
     """
     twins = _twins(surface)
-    apart = _apart(surface, twins)
-    return _halved(apart, _doubled(apart.faces, twins))
+    apart = _apart(surface, twins, retreat)
+    return _halved(apart, _doubled(apart.faces, twins), retreat)
 
 
-def _apart(surface: Surface, twins: Twins) -> Surface:
+def _apart(surface: Surface, twins: Twins, retreat: float) -> Surface:
     keys = surface.faces.ravel().astype(np.int64) << 32 | _sheets(twins)
     names, copies = np.unique(keys, return_inverse=True)
     origins, faces = names >> 32, copies.reshape(-1, 3).astype(np.int32)
@@ -39,7 +38,7 @@ def _apart(surface: Surface, twins: Twins) -> Surface:
     sums = np.zeros(positions.shape)
     np.add.at(sums, faces.ravel(), np.repeat(positions[faces].mean(axis=1), 3, axis=0))
     centers = sums / np.bincount(faces.ravel())[:, None]
-    drawn = np.where(shared[:, None], positions + RETREAT * (centers - positions), positions)
+    drawn = np.where(shared[:, None], positions + retreat * (centers - positions), positions)
     return Surface(drawn.astype(np.float32), faces, surface.cell)
 
 
@@ -63,7 +62,7 @@ def _doubled(faces: Int32Array, twins: Twins) -> Int64Array:
     return np.stack(twins, axis=1)[counts[edge] > 1]
 
 
-def _halved(surface: Surface, twins: Int64Array) -> Surface:
+def _halved(surface: Surface, twins: Int64Array, retreat: float) -> Surface:
     """The surface with a new vertex in the middle of each pair of half-edges (t, 2)."""
     first = len(surface.positions)
     middles = {half: first + row for row, pair in enumerate(twins.tolist()) for half in pair}
@@ -73,7 +72,7 @@ def _halved(surface: Surface, twins: Int64Array) -> Surface:
     corners = surface.positions[surface.faces[twins // 3]]
     ends = np.stack([corners[:, 0][np.arange(len(twins)), (twins[:, 0] + i) % 3] for i in (0, 1)])
     middle, centers = ends.mean(axis=0), corners.mean(axis=(1, 2))
-    new = (middle + RETREAT * (centers - middle)).astype(np.float32)
+    new = (middle + retreat * (centers - middle)).astype(np.float32)
     return Surface(np.vstack([surface.positions, new]), faces, surface.cell)
 
 

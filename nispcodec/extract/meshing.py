@@ -11,27 +11,19 @@ from nispcodec.core.asset import TexturedMesh
 from nispcodec.core.document import Document
 from nispcodec.core.network import Network
 from nispcodec.extract.components import (
-    SPECK_AREA,
     ExtractionReport,
     components,
     without,
     without_noise,
 )
-from nispcodec.extract.grid import LIMIT
+from nispcodec.extract.config import ExtractConfig, ResolutionConfig
+from nispcodec.extract.grid import CUBE
 from nispcodec.extract.isosurface import Surface, extract, near_surface
 from nispcodec.extract.seams import cut_along_seams
 from nispcodec.extract.simplify import deviation, simplest, simplified
 from nispcodec.extract.thin_walls import thin_share
 from nispcodec.extract.vertex_charts import vertex_charts
 from nispcodec.infer.texture_coordinates import asset_uv
-
-LEAST, MOST = 256, 512
-# Where this share of the surface has walls thinner than a cell, up to FACES triangles are spent.
-THIN = 0.02
-FACES = 500_000
-FACES_A_BLOCK = 6.6
-MAX_RESOLUTION = 2048
-FITTINGS = 4
 
 
 def textured_mesh(
@@ -40,6 +32,7 @@ def textured_mesh(
     faces: int | None = None,
     error: float | None = None,
     keep_spurious: bool = False,
+    config: ExtractConfig = ExtractConfig(),
 ) -> tuple[TexturedMesh, ExtractionReport]:
     """The document's surface in the world frame, textured, and a report on its extraction.
 
@@ -48,58 +41,74 @@ def textured_mesh(
     that the mesh may have, seams included; error: as few triangles as keep the mean distance to the
     field's surface below it (normalized frame); keep_spurious: do not drop noise of the field.
     """
-    surface, report = _surface(document, resolution, error, keep_spurious)
+    surface, report = _surface(document, resolution, error, keep_spurious, config)
     if error is not None:
-        surface = simplest(document.sdf, surface, error)
-    cut, charts = _cut(document, surface) if faces is None else _fitted(document, surface, faces)
-    mesh = _dressed(document, *_opened(document, cut, charts))
+        surface = simplest(document.sdf, surface, error, config.simplify)
+    if faces is None:
+        cut, charts = _cut(document, surface, config)
+    else:
+        cut, charts = _fitted(document, surface, faces, config)
+    mesh = _dressed(document, *_opened(document, cut, charts, config))
     return replace(mesh, warnings=report.warnings), report
 
 
-def default_resolution(network: Network, half_thickness: float) -> int:
+def default_resolution(
+    network: Network, half_thickness: float, config: ResolutionConfig = ResolutionConfig()
+) -> int:
     """256; for thin walls up to 512, as triangles allow; one cell for sheets' half thickness."""
-    points, size = near_surface(network, LEAST)
-    thin = thin_share(network, points, size, 2 * LIMIT / LEAST)
-    affordable = int(LEAST * np.sqrt(FACES / (FACES_A_BLOCK * max(len(points), 1))))
-    cells = min(max(LEAST, affordable), MOST) if thin > THIN else LEAST
-    sheets = int(np.ceil(2 * LIMIT / half_thickness)) if half_thickness else 0
-    return min(max(cells, sheets), MAX_RESOLUTION)
+    points, size = near_surface(network, config.least)
+    thin = thin_share(network, points, size, 2 * CUBE / config.least, config)
+    blocks = config.faces / (config.faces_per_block * max(len(points), 1))
+    affordable = min(max(config.least, int(config.least * np.sqrt(blocks))), config.most)
+    cells = affordable if thin > config.thin_share else config.least
+    sheets = int(np.ceil(2 * CUBE / half_thickness)) if half_thickness else 0
+    return min(max(cells, sheets), config.highest)
 
 
 def _surface(
-    document: Document, resolution: int | None, error: float | None, keep_spurious: bool
+    document: Document,
+    resolution: int | None,
+    error: float | None,
+    keep_spurious: bool,
+    config: ExtractConfig,
 ) -> tuple[Surface, ExtractionReport]:
     """The surface at the resolution asked for, or at one that is fine enough for `error`."""
-    cells = resolution or default_resolution(document.sdf, document.half_thickness)
+    sdf, limits = document.sdf, config.resolution
+    cells = resolution or default_resolution(sdf, document.half_thickness, limits)
     while True:
-        surface, report = without_noise(document.sdf, extract(document.sdf, cells), keep_spurious)
-        given = resolution is not None or error is None or 2 * cells > MAX_RESOLUTION
-        if given or deviation(document.sdf, surface) <= (error or 0.0):
+        found = extract(sdf, cells, config.isosurface)
+        surface, report = without_noise(sdf, found, keep_spurious, config.components)
+        given = resolution is not None or error is None or 2 * cells > limits.highest
+        if given or deviation(sdf, surface) <= (error or 0.0):
             return surface, report
         cells *= 2
 
 
-def _cut(document: Document, surface: Surface) -> tuple[Surface, Int32Array]:
+def _cut(document: Document, surface: Surface, config: ExtractConfig) -> tuple[Surface, Int32Array]:
     """The surface with one chart a face, and those charts (m,)."""
     if document.chart is None:
         return surface, np.zeros(len(surface.faces), np.int32)
-    charts = vertex_charts(document.chart, surface)
-    return cut_along_seams(document.sdf, document.chart, surface, charts)
+    charts = vertex_charts(document.chart, surface, config.seams)
+    return cut_along_seams(document.sdf, document.chart, surface, charts, config.seams)
 
 
-def _fitted(document: Document, surface: Surface, faces: int) -> tuple[Surface, Int32Array]:
+def _fitted(
+    document: Document, surface: Surface, faces: int, config: ExtractConfig
+) -> tuple[Surface, Int32Array]:
     """The surface simplified until it has at most `faces` triangles after being cut."""
     target = faces
-    for _ in range(FITTINGS):
-        cut, charts = _cut(document, simplified(surface, target))
+    for _ in range(config.simplify.face_fittings):
+        cut, charts = _cut(document, simplified(surface, target, config.simplify), config)
         if len(cut.faces) <= faces:
             break
         target = int(0.99 * target * faces / len(cut.faces))
     return cut, charts
 
 
-def _opened(document: Document, surface: Surface, charts: Int32Array) -> tuple[Surface, Int32Array]:
-    """Without the membranes that the field draws across the asset's openings.
+def _opened(
+    document: Document, surface: Surface, charts: Int32Array, config: ExtractConfig
+) -> tuple[Surface, Int32Array]:
+    """Without the closing surfaces that the field draws across the asset's openings.
 
     Islands in them, tiny pieces of another chart, go as well: the chart network was wrong there.
     """
@@ -111,7 +120,8 @@ def _opened(document: Document, surface: Surface, charts: Int32Array) -> tuple[S
     opened = Surface(surface.positions[used], faces, surface.cell)
     count, labels = components(opened)
     rim = labels[np.isin(used, surface.faces[~kept])]
-    tiny = np.bincount(labels, minlength=count) * surface.cell**2 < SPECK_AREA
+    areas = np.bincount(labels, minlength=count) * surface.cell**2
+    tiny = areas < config.components.small_area
     islands = tiny & (np.bincount(rim, minlength=count) > 0)
     left = ~islands[labels[faces[:, 0]]]
     return without(opened, islands, labels), charts[kept][left]

@@ -10,25 +10,25 @@ import numpy as np
 
 from nispcodec.core.arrays import BoolArray, Float32Array, Int32Array, Int64Array
 from nispcodec.core.network import Network
+from nispcodec.extract.config import SeamConfig
 from nispcodec.extract.isosurface import Surface
 from nispcodec.extract.newton import onto_surface
 from nispcodec.infer.evaluate import contrast
 
-BISECTIONS = 8
-# Cuts stay this far from an edge's ends (share of its length): no needles, no empty triangles.
-CLEARANCE = 0.02
-
 
 def cut_along_seams(
-    sdf: Network, chart: Network, surface: Surface, charts: Int32Array
+    sdf: Network,
+    chart: Network,
+    surface: Surface,
+    charts: Int32Array,
+    config: SeamConfig = SeamConfig(),
 ) -> tuple[Surface, Int32Array]:
     """The surface cut where `charts` (n,), one a vertex, change -> surface, chart of each face."""
     corners = charts[surface.faces]
     crossing = corners != np.roll(corners, -1, axis=1)
     edges, cuts = _crossed_edges(surface.faces, crossing, len(surface.positions))
-    new = onto_surface(
-        sdf, _borders(chart, surface.positions, edges, charts), surface.cell / 2, steps=1
-    )
+    borders = _borders(chart, surface.positions, edges, charts, config)
+    new = onto_surface(sdf, borders, surface.cell / 2, steps=1)
     positions = np.vstack([surface.positions, new])
     kinds = crossing.sum(axis=1)
     middles = _middles(sdf, positions, cuts[kinds == 3], surface.cell)
@@ -58,7 +58,11 @@ def _crossed_edges(
 
 
 def _borders(
-    network: Network, positions: Float32Array, edges: Int64Array, charts: Int32Array
+    network: Network,
+    positions: Float32Array,
+    edges: Int64Array,
+    charts: Int32Array,
+    config: SeamConfig,
 ) -> Float32Array:
     """Where the chart changes along each edge: (e, 3), by bisection on the two charts' contrast."""
     start, end = positions[edges[:, 0]], positions[edges[:, 1]]
@@ -68,13 +72,13 @@ def _borders(
     bracketed = (contrast(network, start, first, second) >= 0) & (
         contrast(network, end, first, second) <= 0
     )
-    for _ in range(BISECTIONS):
+    for _ in range(config.bisections):
         middle = (low + high) / 2
         points = start + middle[:, None] * (end - start)
         before = contrast(network, points, first, second) > 0
         low, high = np.where(before, middle, low), np.where(before, high, middle)
     share = np.where(bracketed, (low + high) / 2, np.float32(0.5))
-    share = np.clip(share, CLEARANCE, 1 - CLEARANCE)
+    share = np.clip(share, config.clearance, 1 - config.clearance)
     borders: Float32Array = start + share[:, None] * (end - start)
     return borders
 

@@ -9,18 +9,13 @@ from __future__ import annotations
 import numpy as np
 
 from nispcodec.core.network import Network
+from nispcodec.extract.config import SimplifyConfig
 from nispcodec.extract.isosurface import Surface
 from nispcodec.extract.manifold import manifold
 from nispcodec.infer.evaluate import evaluate
 
-# How eagerly long edges collapse, 0 to 10: above 5 thin parts fold over, below 5 counts are missed.
-AGGRESSIVENESS = 5
-ROUGHNESS = 1e-3
-# Triangles that are left after each step of a search for the fewest.
-SHRINKAGE = 0.7
 
-
-def simplified(surface: Surface, faces: int) -> Surface:
+def simplified(surface: Surface, faces: int, config: SimplifyConfig = SimplifyConfig()) -> Surface:
     """The surface with about `faces` triangles, or as it is when it has no more than that.
 
     Its vertices lie where they serve the triangles best, no longer on the zero set.
@@ -30,12 +25,13 @@ def simplified(surface: Surface, faces: int) -> Surface:
     from fast_simplification import simplify
 
     # On exactly flat parts all quadrics are 0 and collapses get stuck: make them a little rough.
-    noise = np.random.default_rng(0).normal(0, ROUGHNESS * surface.cell, surface.positions.shape)
-    rough = surface.positions + noise.astype(np.float32)
-    positions, corners = simplify(rough, surface.faces, target_count=faces, agg=AGGRESSIVENESS)
+    scale, shape = config.roughness * surface.cell, surface.positions.shape
+    rough = surface.positions + np.random.default_rng(0).normal(0, scale, shape).astype(np.float32)
+    eager = config.aggressiveness
+    positions, corners = simplify(rough, surface.faces, target_count=faces, agg=eager)
     fewer = Surface(positions.astype(np.float32), corners.astype(np.int32), surface.cell)
     # Sheets taken apart may leave two faces that have nothing but each other.
-    return without_fins(manifold(without_fins(fewer)))
+    return without_fins(manifold(without_fins(fewer), config.retreat))
 
 
 def without_fins(surface: Surface) -> Surface:
@@ -54,10 +50,12 @@ def without_fins(surface: Surface) -> Surface:
     )
 
 
-def simplest(network: Network, surface: Surface, error: float) -> Surface:
+def simplest(
+    network: Network, surface: Surface, error: float, config: SimplifyConfig = SimplifyConfig()
+) -> Surface:
     """The surface with fewer triangles, as long as its deviation stays within `error`."""
     while True:
-        fewer = simplified(surface, int(SHRINKAGE * len(surface.faces)))
+        fewer = simplified(surface, int(config.shrinkage * len(surface.faces)), config)
         stuck = len(fewer.faces) >= len(surface.faces)
         if stuck or deviation(network, fewer) > error:
             return surface

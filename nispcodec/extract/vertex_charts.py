@@ -8,22 +8,20 @@ from scipy.sparse.csgraph import connected_components
 
 from nispcodec.core.arrays import Int32Array, Int64Array
 from nispcodec.core.network import Network
+from nispcodec.extract.config import SeamConfig
 from nispcodec.extract.isosurface import Surface
 from nispcodec.infer.evaluate import classify
 
-# Area, in the normalized frame, below which a patch of one chart is a mistake of the field.
-SPECK_AREA = 1.2e-4
-SPECK_VERTICES = 2
-ROUNDS = 3
 
-
-def vertex_charts(network: Network, surface: Surface) -> Int32Array:
-    """The chart of each vertex (n,), specks of wrong chart voted away."""
+def vertex_charts(
+    network: Network, surface: Surface, config: SeamConfig = SeamConfig()
+) -> Int32Array:
+    """The chart of each vertex (n,), small components of a wrong chart voted away."""
     charts = classify(network, surface.positions)
     edges = _links(surface.faces)
-    least = max(SPECK_VERTICES, round(SPECK_AREA / surface.cell**2))
-    for _ in range(ROUNDS):
-        before, charts = charts, _without_specks(charts, edges, least)
+    least = max(config.small_vertices, round(config.small_area / surface.cell**2))
+    for _ in range(config.votes):
+        before, charts = charts, _without_small(charts, edges, least)
         if np.array_equal(before, charts):
             break
     return charts
@@ -35,16 +33,16 @@ def _links(faces: Int32Array) -> Int64Array:
     return sides[sides[:, 0] < sides[:, 1]].astype(np.int64)
 
 
-def _without_specks(charts: Int32Array, edges: Int64Array, least: int) -> Int32Array:
+def _without_small(charts: Int32Array, edges: Int64Array, least: int) -> Int32Array:
     """Patches of one chart with fewer than `least` vertices take the chart of most neighbors."""
     a, b = edges.T
     same = charts[a] == charts[b]
     size = len(charts)
     graph = coo_array((same[same], (a[same], b[same])), shape=(size, size))
     count, patches = connected_components(graph, directed=False)
-    speck = (np.bincount(patches, minlength=count) < least)[patches]
+    small = (np.bincount(patches, minlength=count) < least)[patches]
     borders = np.concatenate([edges[~same], edges[~same][:, ::-1]])
-    borders = borders[speck[borders[:, 0]] & ~speck[borders[:, 1]]]
+    borders = borders[small[borders[:, 0]] & ~small[borders[:, 1]]]
     votes = patches[borders[:, 0]].astype(np.int64) << 32 | charts[borders[:, 1]]
     ballots, counts = np.unique(votes, return_counts=True)
     winner_last = ballots[np.argsort(counts, kind="stable")]

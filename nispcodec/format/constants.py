@@ -1,7 +1,8 @@
 """Names and numbers of the container, version 1: the same as in `format_spec.md`.
 
-Enumerations are the tuples here and those of `nispcodec.core.asset` and `nispcodec.core.network`;
-on disk a member is its position counted from 1, and 0 is reserved.
+Enumerations are the tuples here and those of `nispcodec.core.asset`, `nispcodec.core.network` and
+`nispcodec.format.codings.registry`; on disk a member is its position counted from 1, and 0 is
+reserved.
 """
 
 from __future__ import annotations
@@ -21,7 +22,6 @@ TXTR = "TXTR"
 SECTIONS = (META, NETS, TXTR)
 
 NETWORKS = ("sdf", "chart", "uv")
-CODINGS = ("dense", "coo", "csc", "csr", "dia", "entropy", "delta_init")
 MEASURES = (
     "preset",
     "seed",

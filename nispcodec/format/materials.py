@@ -9,13 +9,13 @@ from nispcodec.core.asset import (
     ALPHA_MODES,
     FILTERS,
     MIME_TYPES,
-    SLOTS,
     WRAPS,
     Material,
     Texture,
     TextureMap,
 )
 from nispcodec.core.errors import FormatError
+from nispcodec.core.slots import SLOTS
 from nispcodec.format.constants import ENDINGS, MAX_FILE, MAX_ITEMS, META
 from nispcodec.format.record import Record, check_file_name, check_text, number, sparse
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -14,10 +14,10 @@ from nispcodec.core.errors import FormatError
 from nispcodec.core.initial_weights import predicted
 from nispcodec.core.network import Network, NetworkSpec
 from nispcodec.format import steps
-from nispcodec.format.codings import coo, csc, csr, dense, dia, entropy
+from nispcodec.format.codings import entropy
 from nispcodec.format.codings.reader import Reader, varint
+from nispcodec.format.codings.registry import BY_NUMBER, REGISTRY, Coding
 from nispcodec.format.constants import (
-    CODINGS,
     MAX_JOINED,
     MAX_SYMBOL,
     MAX_UNPACKED,
@@ -27,8 +27,6 @@ from nispcodec.format.constants import (
 from nispcodec.format.container import pack_content
 from nispcodec.format.tensor import Tensor
 
-_OWN = {"dense": dense, "coo": coo, "csc": csc, "csr": csr, "dia": dia}
-STREAMED = ("entropy", "delta_init")
 _NONE = [np.zeros(1, np.int64)]
 
 
@@ -39,7 +37,7 @@ class Record:
     Rows have row shifts of `width` bits, none where that is 0.
     """
 
-    coding: str
+    coding: Coding
     tensors: list[Tensor]
     before: float | None
     width: int
@@ -47,7 +45,7 @@ class Record:
     @cached_property
     def run(self) -> entropy.SymbolRun | None:
         """What goes to the stream, if anything does."""
-        if self.coding not in STREAMED:
+        if self.coding.codec:
             return None
         return entropy.SymbolRun(np.concatenate([each.ravel() for each in self._values]))
 
@@ -58,10 +56,11 @@ class Record:
             row_shifts = np.concatenate(self._row_shifts)
             name, step = steps.encode(first.path, first.step, self.before, row_shifts, self.width)
             form = 1 + STEPS.index(name)
-        tag = 1 + CODINGS.index(self.coding) | form << 3 | len(self.tensors) - 1 << 6
-        if not self.run:
-            return bytes([tag]) + step + _OWN[self.coding].encode(self._values[0])
-        scaled = self.tensors if self.coding == "delta_init" else []
+        tag = self.coding.number | form << 3 | len(self.tensors) - 1 << 6
+        if self.coding.codec:
+            return bytes([tag]) + step + self.coding.codec.encode(self._values[0])
+        assert self.run is not None
+        scaled = self.tensors if self.coding.predicts else []
         scales = b"".join(varint(tensor.init_scale) for tensor in scaled)
         return bytes([tag]) + step + scales + self.run.header()
 
@@ -71,7 +70,7 @@ class Record:
 
     @property
     def _values(self) -> list[AnyArray]:
-        pairs, delta = zip(self.tensors, self._row_shifts, strict=True), self.coding == "delta_init"
+        pairs, delta = zip(self.tensors, self._row_shifts, strict=True), self.coding.predicts
         return [tensor.values(row_shifts, delta) for tensor, row_shifts in pairs]
 
     @cached_property
@@ -119,15 +118,19 @@ def candidates(name: str, network: Network) -> list[Candidate]:
 
 def _records(run: list[Tensor], before: float | None) -> Iterator[Record]:
     """Every record of these tensors."""
-    codings = list(_OWN) if len(run) == 1 else []
-    codings += STREAMED if any(tensor.init_scale for tensor in run) else STREAMED[:1]
+    predictable = any(tensor.init_scale for tensor in run)
+    codings = [
+        coding
+        for coding in REGISTRY
+        if (len(run) == 1 if coding.codec else predictable or not coding.predicts)
+    ]
     widest = max(int(tensor.row_shifts.max()) for tensor in run).bit_length()
     rows = run[0].step is not None and steps.has_row_shifts(run[0].step)
     for width in {0, widest if rows else 0}:
         yield from (Record(coding, run, before, width) for coding in codings)
 
 
-def cheapest(candidates: list[Candidate], codings: tuple[str, ...]) -> list[Record]:
+def cheapest(candidates: list[Candidate], codings: Sequence[Coding]) -> list[Record]:
     """The records that cover all tensors, in some of the codings, in the fewest bytes."""
     plans: dict[int, tuple[float, list[Record]]] = {0: (0.0, [])}
     for start, end, record in candidates:
@@ -168,12 +171,12 @@ def read(reader: Reader, path: str, spec: NetworkSpec) -> list[Part]:
 def _read(reader: Reader, left: list[str], spec: NetworkSpec, before: float | None) -> Part:
     tag = reader.take(1, "coding")[0]
     number, form, joined = tag & 7, tag >> 3 & 7, tag >> 6
-    if not 1 <= number <= len(CODINGS):
-        raise reader.error("coding", f"1 to {len(CODINGS)}", number)
-    coding = CODINGS[number - 1]
-    if coding == "delta_init" and not form:
-        raise reader.error("step", f"1 to {len(STEPS)} with delta_init", form)
-    most = len(left) - 1 if coding in STREAMED else 0
+    if number not in BY_NUMBER:
+        raise reader.error("coding", f"1 to {len(REGISTRY)}", number)
+    coding = BY_NUMBER[number]
+    if coding.predicts and not form:
+        raise reader.error("step", f"1 to {len(STEPS)} with {coding.name}", form)
+    most = 0 if coding.codec else len(left) - 1
     if joined > most:
         raise reader.error("joined", f"at most {most} more tensors", joined)
     step = steps.decode(reader, STEPS[form - 1], before) if form else None
@@ -181,11 +184,12 @@ def _read(reader: Reader, left: list[str], spec: NetworkSpec, before: float | No
     shapes = [_matrix_shape(spec.shapes[name]) for name in names]
     every = _row_shifts(reader, STEPS[form - 1], shapes) if form else _NONE
     row_shifts = np.concatenate([each.ravel() for each in every])
-    if coding not in STREAMED:
-        values = _OWN[coding].decode(reader, shapes[0], step is not None).ravel()
+    if coding.codec:
+        values = coding.codec.decode(reader, shapes[0], step is not None).ravel()
         return Part(names, step, values, None, row_shifts, _NONE[0])
-    delta = coding == "delta_init"
-    expected = _expected(reader, spec.initial_integers(names), every) if delta else _NONE[0]
+    expected = _NONE[0]
+    if coding.predicts:
+        expected = _expected(reader, spec.initial_integers(names), every)
     count = sum(math.prod(shape) for shape in shapes)
     header = entropy.read_header(reader, count, step is not None)
     return Part(names, step, None, header, row_shifts, expected)

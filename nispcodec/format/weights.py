@@ -12,23 +12,26 @@ from nispcodec.core.network import Network, NetworkSpec
 from nispcodec.format import records
 from nispcodec.format.codings import entropy
 from nispcodec.format.codings.reader import Reader
-from nispcodec.format.constants import CODINGS, MAX_SYMBOL, MAX_UNPACKED, MAX_WEIGHTS, NETS
+from nispcodec.format.codings.registry import BY_NAME, CODINGS, REGISTRY
+from nispcodec.format.constants import MAX_SYMBOL, MAX_UNPACKED, MAX_WEIGHTS, NETS
 from nispcodec.format.container import pack_content
-from nispcodec.format.records import STREAMED, Part, Record
+from nispcodec.format.records import Part, Record
 
 
 def encode(networks: dict[str, Network], coding: str | None) -> bytes:
     """All tensors in file order; `coding` None takes the fewest bytes."""
-    if coding is not None and coding not in CODINGS:
+    if coding is not None and coding not in BY_NAME:
         raise FormatError(NETS, "coding", f"one of {', '.join(CODINGS)}", coding)
     _check_count([network.spec for network in networks.values()])
     prepared = [records.candidates(name, network) for name, network in networks.items()]
-    own, streamed = tuple(name for name in CODINGS if name not in STREAMED), STREAMED
+    own = [each for each in REGISTRY if each.codec]
+    streamed = [each for each in REGISTRY if not each.codec]
     # The section is packed as a whole, so that the best for each tensor may not be the best of all.
-    choices = [*((name,) for name in own), streamed, own, CODINGS]
+    choices = [*([each] for each in own), streamed, own, list(REGISTRY)]
     if coding:
         # Weights that are no symbols, or that nothing predicts, cannot be differences.
-        choices = [streamed if coding == "delta_init" else (coding,)]
+        wanted = BY_NAME[coding]
+        choices = [streamed if wanted.predicts else [wanted]]
     sections = (
         _section([record for each in prepared for record in records.cheapest(each, choice)])
         for choice in choices

@@ -12,16 +12,13 @@ from nispcodec.core.document import ChartTable, Frame
 from nispcodec.geometry.chart_cuts import split_self_seams
 from nispcodec.geometry.chart_merging import Cover, merge_charts
 from nispcodec.geometry.charts import Charts, split_charts
-from nispcodec.geometry.config import GeometryConfig, MergingConfig, OpeningsConfig, SymmetryConfig
+from nispcodec.geometry.config import GeometryConfig, MergingConfig, SymmetryConfig
 from nispcodec.geometry.distance import DistanceField
 from nispcodec.geometry.labeling import Labeling, chart_table
 from nispcodec.geometry.openings import crossings
 from nispcodec.geometry.solid import Solid, build_solid
 from nispcodec.geometry.surface_points import laplace_offsets, raised, solid_surface
 from nispcodec.geometry.symmetry import Symmetry, find_symmetry, folded, mirrored_charts
-
-CUBE = 1.05
-"""Half the side of the cube (normalized frame) that anybody asks about."""
 
 
 @dataclass(frozen=True)
@@ -60,9 +57,13 @@ class Analysis:
 
 
 def analyze(
-    mesh: TexturedMesh, random: np.random.Generator, config: GeometryConfig = GeometryConfig()
+    mesh: TexturedMesh, seed: int = 0, config: GeometryConfig = GeometryConfig()
 ) -> Analysis:
-    """Analyze an asset. Raises MeshError when nothing of it can be held by a signed distance."""
+    """Analyze an asset: the same mesh and seed, the same analysis.
+
+    Raises MeshError when nothing of it can be held by a signed distance.
+    """
+    random = np.random.default_rng([seed, 0])
     frame = normalizing_frame(mesh)
     corners = frame.to_normalized(mesh.corners)
     field = DistanceField(build_solid(corners, config.solid), config.solid.sheet_lift)
@@ -77,7 +78,7 @@ def analyze(
         charts = _merged(label, symmetry, random, config.merging, config.symmetry)
         table = chart_table(mesh, charts, config.filled_atlas)
         label = replace(label, charts=charts, table=table)
-        closing = _closing_points(field, random, config.openings)
+        closing = _closing_points(field, random, config)
     if len(closing):
         label = replace(label, table=_with_openings(table))
     return Analysis(mesh, frame, patches, label, symmetry, closing, config)
@@ -113,14 +114,14 @@ def _merged(
 
 
 def _closing_points(
-    field: DistanceField, random: np.random.Generator, config: OpeningsConfig
+    field: DistanceField, random: np.random.Generator, config: GeometryConfig
 ) -> Float64Array:
     """Points (k, 3) on closing surfaces; none where these are not worth a chart."""
-    surface, _ = solid_surface(random, field.solid, config.probes)
-    probes = laplace_offsets(random, surface, config.probe_spread, CUBE)
+    surface, _ = solid_surface(random, field.solid, config.openings.probes)
+    probes = laplace_offsets(random, surface, config.openings.probe_spread, config.cube)
     # As labels have them: the single precision of samples.
-    found = crossings(field, probes.astype(np.float32).astype(np.float64), random, config)
-    return found if len(found) >= config.notable * len(probes) else found[:0]
+    found = crossings(field, probes.astype(np.float32).astype(np.float64), random, config.openings)
+    return found if len(found) >= config.openings.notable * len(probes) else found[:0]
 
 
 def _with_openings(table: ChartTable) -> ChartTable:

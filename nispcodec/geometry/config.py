@@ -126,6 +126,7 @@ class GeometryConfig:
     merging       None leaves charts as the mesh has them, and openings without a chart
     filled_atlas  UVs that fill so much of the unit square in both directions stay as they are: no
                   map to store
+    cube          half the side of the cube that anybody asks about: the asset's, and some room
     """
 
     solid: SolidConfig = field(default_factory=SolidConfig)
@@ -133,3 +134,4 @@ class GeometryConfig:
     merging: MergingConfig | None = field(default_factory=MergingConfig)
     openings: OpeningsConfig = field(default_factory=OpeningsConfig)
     filled_atlas: float = 0.95
+    cube: float = 1.05

@@ -15,7 +15,7 @@ import numpy as np
 from nispcodec.core.arrays import Float32Array, Int32Array, IntArray
 from nispcodec.core.errors import QueryError
 from nispcodec.core.network import Network, NetworkSpec
-from nispcodec.infer.parallel import on_every_core
+from nispcodec.infer.parallel import parallel_for
 
 # Bytes of two layers' activations of a block: they stay in a core's cache. Smaller blocks cost more
 # calls than they save, and threads wait for each other at every call.
@@ -270,7 +270,7 @@ def _frames(network: Network) -> Float32Array:
 
 def _in_blocks(run: Callable[[slice], None], spec: NetworkSpec, count: int) -> None:
     size = block_size(spec)
-    on_every_core(run, [slice(start, start + size) for start in range(0, count, size)])
+    parallel_for(run, [slice(start, start + size) for start in range(0, count, size)])
 
 
 def block_size(spec: NetworkSpec) -> int:

@@ -17,7 +17,7 @@ _ALONE = Lock()
 _mine = local()
 
 
-def on_every_core(run: Callable[[Part], object], parts: Sequence[Part]) -> None:
+def parallel_for(run: Callable[[Part], object], parts: Sequence[Part]) -> None:
     """Run on each of the parts, on as many threads as there are cores.
 
     A part that does the same with parts of its own has one core for them. The first error is

@@ -12,8 +12,9 @@ from nispcodec.io.cleanup import clean
 from nispcodec.io.folder import Folder
 from nispcodec.io.read.gltf import read_gltf
 from nispcodec.io.read.obj import read_obj
-from nispcodec.io.read.plain import read_off, read_stl
+from nispcodec.io.read.off import read_off
 from nispcodec.io.read.ply import read_ply
+from nispcodec.io.read.stl import read_stl
 
 # A reader takes the file's bytes, its name for messages, and the folder that it may refer to.
 Reader = Callable[[bytes, str, Folder], TexturedMesh]
@@ -28,7 +29,7 @@ READERS: dict[str, Reader] = {
 }
 
 
-def load_mesh(path: Path) -> TexturedMesh:
+def load_mesh(path: str | Path) -> TexturedMesh:
     """Read OBJ, glTF, GLB, PLY, STL or OFF with its materials and textures, cleaned up.
 
     Positions are in the world frame, in the file's units; UVs have their origin bottom-left.

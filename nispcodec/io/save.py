@@ -15,15 +15,30 @@ from nispcodec.io.write.obj import obj_files
 from nispcodec.io.write.ply import ply_bytes
 from nispcodec.io.write.stl import stl_bytes
 
-SINGLE: dict[str, Callable[[TexturedMesh, Float32Array | None], bytes]] = {
-    ".glb": glb_bytes,
-    ".ply": ply_bytes,
-    ".stl": stl_bytes,
+Writer = Callable[[TexturedMesh, str, Float32Array | None], dict[str, bytes]]
+"""Mesh, stem of the file name, colors (n, 4) of the vertices or None -> file names and bytes."""
+
+
+def _alone(
+    suffix: str, write: Callable[[TexturedMesh, Float32Array | None], bytes]
+) -> dict[str, Writer]:
+    """The writer of a format that is one file."""
+    return {suffix: lambda mesh, stem, colors: {f"{stem}{suffix}": write(mesh, colors)}}
+
+
+WRITERS: dict[str, Writer] = {
+    **_alone(".glb", glb_bytes),
+    **_alone(".ply", ply_bytes),
+    **_alone(".stl", stl_bytes),
+    ".obj": obj_files,
 }
-SUFFIXES = (*SINGLE, ".obj")
+SUFFIXES = tuple(WRITERS)
+"""A new format is a file in `io/write` and a line here."""
 
 
-def write_mesh(mesh: TexturedMesh, path: Path, colors: Float32Array | None = None) -> list[Path]:
+def write_mesh(
+    mesh: TexturedMesh, path: str | Path, colors: Float32Array | None = None
+) -> list[Path]:
     """Write the mesh in the format of the path's suffix -> the files written, `path` last.
 
     An OBJ puts its MTL and images beside it. Each file is written under another name and then
@@ -44,12 +59,11 @@ def write_mesh(mesh: TexturedMesh, path: Path, colors: Float32Array | None = Non
 
 
 def _files(mesh: TexturedMesh, path: Path, colors: Float32Array | None) -> dict[str, bytes]:
+    """File names and bytes, that of `path` last."""
     suffix = path.suffix.lower()
-    if suffix == ".obj":
-        files = obj_files(mesh, path.stem, colors)
-        files[path.name] = files.pop(f"{path.stem}.obj")
-        return files
-    if suffix not in SINGLE:
+    if suffix not in WRITERS:
         found = repr(path.suffix) if path.suffix else "none"
         raise MeshError(f"{path}: expected a suffix of {', '.join(SUFFIXES)}, found {found}")
-    return {path.name: SINGLE[suffix](mesh, colors)}
+    files = WRITERS[suffix](mesh, path.stem, colors)
+    files[path.name] = files.pop(f"{path.stem}{suffix}")
+    return files

@@ -11,7 +11,7 @@ FACTORS = np.array([0x9E3779B97F4A7C15, 0xC2B2AE3D27D4EB4F, 0x165667B19E3779F9],
 DOWN = np.uint64(32)
 
 
-def twins(corners: Float64Array, normals: Float64Array) -> Int64Array:
+def opposite_faces(corners: Float64Array, normals: Float64Array) -> Int64Array:
     """(m,): for each face another one with the same corners that looks the other way; -1 for none.
 
     corners (m, 3, 3), normals (m, 3).

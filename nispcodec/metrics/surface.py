@@ -11,7 +11,7 @@ from nispcodec.core.arrays import BoolArray, Float64Array, Int64Array
 from nispcodec.core.asset import TexturedMesh
 from nispcodec.core.document import Frame
 from nispcodec.core.errors import MeshError
-from nispcodec.metrics.opposite_faces import twins
+from nispcodec.metrics.opposite_faces import opposite_faces
 
 FLAT = 1e-7
 """A face whose height is less than this part of its longest edge is a line, to double precision."""
@@ -89,9 +89,9 @@ class Surface:
         return self._crosses / np.maximum(2 * self.areas, np.finfo(np.float64).tiny)[:, None]
 
     @cached_property
-    def twins(self) -> Int64Array:
+    def opposite_faces(self) -> Int64Array:
         """(m,): the face back to back with each face, -1 where there is none."""
-        return twins(self.corners, self.normals)
+        return opposite_faces(self.corners, self.normals)
 
     @cached_property
     def diagonal(self) -> float:
@@ -114,7 +114,7 @@ class Surface:
         From the points themselves; on two faces back to back from `BEFORE` in front of their own,
         or one would see either side of what has a thickness there.
         """
-        doubled = np.flatnonzero(self.twins[points.faces] >= 0)
+        doubled = np.flatnonzero(self.opposite_faces[points.faces] >= 0)
         positions = points.positions.copy()
         positions[doubled] += BEFORE * self.normals[points.faces[doubled]]
         return positions
@@ -141,9 +141,9 @@ class Surface:
 
     def facing(self, faces: Int64Array, towards: Float64Array) -> Int64Array:
         """Faces (n,), or of two back to back the one met from its front in directions (n, 3)."""
-        twin = self.twins[faces]
+        opposite = self.opposite_faces[faces]
         behind = (self.normals[faces] * towards).sum(axis=1) > 0
-        return np.where(behind & (twin >= 0), twin, faces)
+        return np.where(behind & (opposite >= 0), opposite, faces)
 
     def interpolate(self, faces: Int64Array, weights: Float64Array) -> Float64Array:
         """(n, 3) positions at barycentric weights (n, 3) of faces (n,)."""

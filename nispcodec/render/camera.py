@@ -54,7 +54,7 @@ class Camera:
         return np.asarray(self.target) + distance * self.axes[2]
 
     @property
-    def reach(self) -> float:
+    def half_width(self) -> float:
         """Half the picture's width at distance 1."""
         return float(np.tan(np.radians(self.fov) / 2)) / self.zoom
 
@@ -63,14 +63,14 @@ class Camera:
 
         (0, 0) is its top left corner, (1, 1) its bottom right.
         """
-        across, down = (2 * x - 1) * self.reach, (2 * y - 1) * self.reach
+        across, down = (2 * x - 1) * self.half_width, (2 * y - 1) * self.half_width
         rays = np.column_stack([across, -down, -np.ones(len(x))]) @ self.axes
         return (rays / np.linalg.norm(rays, axis=1, keepdims=True)).astype(np.float32)
 
     def places(self, points: FloatArray) -> Float64Array:
         """Where points (n, 3) before the camera are in the picture (n, 2): see `directions`."""
         right, up, backward = self.axes @ (points - self.eye).T
-        return 0.5 + 0.5 * np.column_stack([right, -up]) / (-backward * self.reach)[:, None]
+        return 0.5 + 0.5 * np.column_stack([right, -up]) / (-backward * self.half_width)[:, None]
 
 
 def view(text: str, fov: float = 32.0) -> Camera:

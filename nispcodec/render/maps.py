@@ -7,7 +7,8 @@ from threading import Lock
 import numpy as np
 
 from nispcodec.core.arrays import Float32Array
-from nispcodec.core.asset import SRGB_SLOTS, Material, Texture
+from nispcodec.core.asset import Material, Texture
+from nispcodec.core.slots import BY_NAME
 from nispcodec.core.texture import decode_image, sample_texture, srgb_to_linear
 from nispcodec.render.fragments import Fragments
 
@@ -31,7 +32,7 @@ class Maps:
         used = material.maps.get(slot)
         if used is None:
             return None
-        pyramid = self._pyramid(used.texture, slot in SRGB_SLOTS)
+        pyramid = self._pyramid(used.texture, BY_NAME[slot].srgb)
         if used.filter == "nearest":
             return sample_texture(pyramid[0], points.uvs, used.wrap, used.filter)
         levels = _levels(points, footprints, pyramid[0].shape, len(pyramid))

@@ -13,7 +13,7 @@ import numpy as np
 
 from nispcodec.core.arrays import BoolArray, Float32Array, Int32Array, Int64Array
 from nispcodec.core.network import Network
-from nispcodec.extract.isosurface import OUTSIDE
+from nispcodec.extract.isosurface import BALL
 from nispcodec.infer.evaluate import evaluate
 from nispcodec.render.space import Space
 
@@ -27,7 +27,7 @@ REFINEMENTS = 3
 # Weight of the newest step in the trend of the field along a ray.
 NEWEST = np.float32(0.3)
 # Rays that leave this ball meet nothing any more.
-BALL = OUTSIDE + 0.06
+TRACED_BALL = BALL + 0.06
 
 
 @dataclass(frozen=True)
@@ -94,7 +94,7 @@ class March:
         """The rays that meet the ball, where they enter it, and where each ray leaves it (n,)."""
         along = -(self._origins * self._directions).sum(axis=0)
         nearest = (self._origins**2).sum(axis=0) - along**2
-        half = np.sqrt(np.maximum(BALL**2 - nearest, 0)).astype(np.float32)
+        half = np.sqrt(np.maximum(TRACED_BALL**2 - nearest, 0)).astype(np.float32)
         leave = along + half
         number = np.flatnonzero((half > 0) & (leave > 0))
         still = np.zeros(len(number), np.float32)

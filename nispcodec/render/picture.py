@@ -8,7 +8,7 @@ import numpy as np
 
 from nispcodec.core.arrays import BoolArray, Float32Array, FloatArray, Int32Array, Int64Array
 from nispcodec.core.texture import linear_to_srgb
-from nispcodec.infer.parallel import cores, on_every_core
+from nispcodec.infer.parallel import cores, parallel_for
 from nispcodec.render.camera import Camera
 from nispcodec.render.fragments import Fragments, Scene
 from nispcodec.render.maps import Maps
@@ -107,10 +107,10 @@ class Eye:
 
         def see(band: slice) -> None:
             directions = self.camera.directions(x[band] / self.size, y[band] / self.size)
-            self._see(directions, seen.part(band), 2 * self.camera.reach / self.size / samples)
+            self._see(directions, seen.part(band), 2 * self.camera.half_width / self.size / samples)
 
         size = max(1, min(BAND, -(-len(x) // cores())))
-        on_every_core(see, [slice(start, start + size) for start in range(0, len(x), size)])
+        parallel_for(see, [slice(start, start + size) for start in range(0, len(x), size)])
         return seen
 
     def _see(self, directions: Float32Array, seen: Samples, width: float) -> None:
@@ -160,7 +160,7 @@ class Eye:
         edges = np.zeros(shape, np.bool_)
         depth = seen.distances.reshape(shape)
         normals, alpha = seen.normals.reshape(*shape, 3), seen.color[:, 3].reshape(shape)
-        deep = DEEP * 2 * self.camera.reach / self.size
+        deep = DEEP * 2 * self.camera.half_width / self.size
         for here, there in (
             ((slice(None), slice(1, None)), (slice(None), slice(-1))),
             ((slice(1, None), slice(None)), (slice(-1), slice(None))),

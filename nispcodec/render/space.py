@@ -15,8 +15,8 @@ from scipy.ndimage import distance_transform_edt, label, map_coordinates
 
 from nispcodec.core.arrays import BoolArray, Float32Array, Int64Array
 from nispcodec.core.network import Network
-from nispcodec.extract.grid import LIMIT
-from nispcodec.extract.isosurface import OUTSIDE, extract
+from nispcodec.extract.grid import CUBE
+from nispcodec.extract.isosurface import BALL, extract
 from nispcodec.infer.evaluate import evaluate, gradient
 
 COARSE, HALVINGS = 32, 2
@@ -47,10 +47,10 @@ class Space:
     def free(self, points: Float32Array) -> Float32Array:
         """(n,): no surface is nearer than this to points (n, 3); negative inside; 0 if unknown."""
         count = len(self.cells)
-        place = (points.T + np.float32(LIMIT)) * np.float32(count / (2 * LIMIT))
+        place = (points.T + np.float32(CUBE)) * np.float32(count / (2 * CUBE))
         x, y, z = np.clip(place, 0, count - 1).astype(np.int32)
         free: Float32Array = self.cells.take((x * count + y) * count + z)
-        near = np.flatnonzero(np.abs(free) < 2 * LIMIT / count)
+        near = np.flatnonzero(np.abs(free) < 2 * CUBE / count)
         if len(near):
             free[near] = self._interpolated(place.take(near, axis=1))
         return free
@@ -89,7 +89,7 @@ def _remembered(network: Network, cells: Int64Array, middles: Float32Array, coun
     shape = (count + 1,) * 3
     corners = np.ravel_multi_index(tuple((cells[:, None] + HALVES).T), shape).T
     used, inverse = np.unique(corners, return_inverse=True)
-    points = np.stack(np.unravel_index(used, shape), axis=1) * (2 * LIMIT / count) - LIMIT
+    points = np.stack(np.unravel_index(used, shape), axis=1) * (2 * CUBE / count) - CUBE
     field = evaluate(network, points.astype(np.float32))[:, 0]
     off = np.abs(field[inverse].reshape(corners.shape).mean(axis=1) - middles)
     doubt = np.zeros(shape, np.float32)
@@ -99,7 +99,7 @@ def _remembered(network: Network, cells: Int64Array, middles: Float32Array, coun
     values.ravel()[used] = field / slope
     distances, sides = _from_known(doubt > 0, values)
     # Between points of the grid the distance may be less than interpolated, by half the diagonal.
-    empty = sides * np.maximum(distances - np.float32(np.sqrt(3) * LIMIT / count), 0)
+    empty = sides * np.maximum(distances - np.float32(np.sqrt(3) * CUBE / count), 0)
     values = np.where(doubt > 0, values, empty)
     bounds = sides[:-1, :-1, :-1] * _least_of_cells(distances)
     return Space(values - doubt, values + doubt, bounds, slope)
@@ -114,7 +114,7 @@ def _from_known(known: BoolArray, values: Float32Array) -> tuple[Float32Array, F
     away = np.zeros(known.shape, np.float32)
     for there, here in zip(nearest, np.ogrid[tuple(map(slice, known.shape))], strict=True):
         away += (there - here) ** 2
-    distances = np.sqrt(away) * np.float32(2 * LIMIT / (len(known) - 1))
+    distances = np.sqrt(away) * np.float32(2 * CUBE / (len(known) - 1))
     return distances, np.where(values[tuple(nearest)] < 0, np.float32(-1), np.float32(1))
 
 
@@ -129,7 +129,7 @@ def _crossed(network: Network, cells: Int64Array, count: int) -> tuple[Float32Ar
     """Those cells, of `count` along an edge, that the surface may cross; the field in them."""
     centers = _centers(cells, count)
     field = evaluate(network, centers)[:, 0]
-    near = np.abs(field) <= _slope(network, centers) * np.sqrt(3) * LIMIT / count
+    near = np.abs(field) <= _slope(network, centers) * np.sqrt(3) * CUBE / count
     return field[near], cells[near]
 
 
@@ -145,8 +145,8 @@ def _is_surface(
 ) -> BoolArray:
     """Which cells are inside the unit ball and hold no surface that is recognized as noise."""
     centers = _centers(cells, count)
-    reach = 2 * LIMIT / count
-    inside: BoolArray = np.linalg.norm(centers, axis=1) < OUTSIDE + reach
+    reach = 2 * CUBE / count
+    inside: BoolArray = np.linalg.norm(centers, axis=1) < BALL + reach
     marked = np.zeros((count,) * 3, np.bool_)
     marked[tuple(cells[inside].T)] = True
     if label(marked, np.ones((3, 3, 3)))[1] < 2:
@@ -166,4 +166,4 @@ def _is_surface(
 
 
 def _centers(cells: Int64Array, count: int) -> Float32Array:
-    return ((cells + 0.5) * (2 * LIMIT / count) - LIMIT).astype(np.float32)
+    return ((cells + 0.5) * (2 * CUBE / count) - CUBE).astype(np.float32)

@@ -7,7 +7,8 @@ import pytest
 from nispcodec_cli import recode
 
 from nispcodec.core.document import Document
-from nispcodec.format import constants, unpack
+from nispcodec.format import unpack
+from nispcodec.format.codings import registry
 from nispcodec.model import NispModel
 from tests.cli.conftest import nisp
 
@@ -33,10 +34,10 @@ def same_answers(before: Document, after: Document) -> bool:
 
 
 def test_it_knows_every_coding() -> None:
-    assert recode.CODINGS == constants.CODINGS
+    assert recode.CODINGS == registry.CODINGS
 
 
-@pytest.mark.parametrize("coding", constants.CODINGS)
+@pytest.mark.parametrize("coding", registry.CODINGS)
 def test_another_coding_computes_the_same(model: Path, coding: str) -> None:
     before, after = recoded(model, "--coding", coding)
     assert same_answers(before, after)

@@ -11,10 +11,11 @@ import numpy as np
 from PIL import Image
 
 from nispcodec.core.arrays import Uint8Array
-from nispcodec.core.asset import SLOTS, WRAPS, Material, Texture, TextureMap
+from nispcodec.core.asset import WRAPS, Material, Texture, TextureMap
 from nispcodec.core.document import ChartTable, Document, Frame
 from nispcodec.core.initial_weights import initial_integers, predicted
 from nispcodec.core.network import Network, NetworkSpec
+from nispcodec.core.slots import SLOTS
 from nispcodec.format import pack
 from tests.conformance.builder import container
 from tests.conformance.malformed import rows

@@ -11,7 +11,7 @@ import pytest
 
 from nispcodec.core.errors import FormatError
 from nispcodec.format import pack, unpack
-from nispcodec.format.constants import CODINGS
+from nispcodec.format.codings.registry import CODINGS
 from nispcodec.model import NispModel
 from tests.conformance.independent import Reader
 from tests.format.documents import assert_same

@@ -7,8 +7,8 @@ import pytest
 
 from nispcodec.dataset.config import SamplingConfig
 from nispcodec.dataset.recipes import paper_training_sets
-from nispcodec.geometry.analysis import CUBE, normalizing_frame
-from nispcodec.geometry.config import SolidConfig
+from nispcodec.geometry.analysis import normalizing_frame
+from nispcodec.geometry.config import GeometryConfig, SolidConfig
 from nispcodec.geometry.surface_points import barycentric
 from tests.geometry.shapes import box_asset, cube, hemisphere, soup
 from tests.samplers import analysis_of, sampler_of
@@ -101,8 +101,8 @@ def test_the_same_seed_gives_the_same_samples_and_another_other_ones() -> None:
 
 def test_cube_samples_fill_the_cube() -> None:
     points = sampler_of(box_asset(), seed=0).cube(4000).points
-    assert np.abs(points).max() <= CUBE
-    assert np.abs(points).max(axis=0) == pytest.approx([CUBE] * 3, rel=0.01)
+    assert np.abs(points).max() <= GeometryConfig.cube
+    assert np.abs(points).max(axis=0) == pytest.approx([GeometryConfig.cube] * 3, rel=0.01)
 
 
 def test_the_surface_is_sampled_by_area() -> None:

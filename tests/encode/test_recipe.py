@@ -97,7 +97,23 @@ def test_textures_stay_are_padded_reencoded_or_left_out() -> None:
     assert not any(material.maps for material in none.materials)
 
 
-@pytest.mark.parametrize("options", [{"preset": "no"}, {"seed": -1}, {"threads": -1}])
+@pytest.mark.parametrize(
+    "options",
+    [
+        {"preset": "no"},
+        {"seed": -1},
+        {"seed": 1.5},
+        {"threads": -1},
+        {"texture_format": "foo"},
+        {"texture_quality": 500},
+        {"texture_quality": 0},
+        {"device": "nonsense"},
+        {"device": "cuda:x"},
+        {"target_size": 0.0},
+        {"target_error": float("nan")},
+    ],
+    ids=str,
+)
 def test_nonsense_settings_are_refused(options: dict[str, object]) -> None:
     with pytest.raises(NispError):
         EncodeConfig(**options)  # type: ignore[arg-type]

@@ -5,12 +5,12 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from nispcodec.extract.grid import BLOCK, LIMIT, Grid
+from nispcodec.extract.grid import BLOCK, CUBE, Grid
 from nispcodec.infer.evaluate import evaluate
 from tests import tiny
 
 ACROSS = 9
-CELL = 2 * LIMIT / (ACROSS * BLOCK)
+CELL = 2 * CUBE / (ACROSS * BLOCK)
 
 
 def some_blocks(share: float) -> np.ndarray:
@@ -27,7 +27,7 @@ def test_a_point_has_one_number_and_one_value(share: float) -> None:
     values, numbers = (np.concatenate(pair).ravel() for pair in zip(first, second, strict=True))
     places = np.indices((BLOCK + 1,) * 3).reshape(3, -1).T
     coordinates = (blocks[:, None] * BLOCK + places).reshape(-1, 3)
-    expected = evaluate(network, (coordinates * CELL - LIMIT).astype(np.float32))[:, 0]
+    expected = evaluate(network, (coordinates * CELL - CUBE).astype(np.float32))[:, 0]
     assert np.allclose(values, expected, atol=1e-4)
     by_place = np.unique(coordinates, axis=0, return_inverse=True)[1].ravel()
     pairs = np.unique(np.stack([by_place, numbers], axis=1), axis=0)

@@ -7,7 +7,7 @@ import pytest
 
 from nispcodec.core.network import Network
 from nispcodec.extract.components import components, spurious, without, without_noise
-from nispcodec.extract.grid import LIMIT
+from nispcodec.extract.grid import CUBE
 from nispcodec.extract.isosurface import Surface, extract
 from nispcodec.infer.evaluate import evaluate
 from tests import tiny
@@ -33,7 +33,7 @@ def test_sphere_is_sound_and_on_the_zero_set(ball: Network, resolution: int) -> 
 
 def test_octahedron_is_sound_at_its_edges_and_corners() -> None:
     # Corners of the octahedron fall on grid points: crossings with several edges at one place.
-    surface = extract(tiny.octahedron(LIMIT / 2), 64)
+    surface = extract(tiny.octahedron(CUBE / 2), 64)
     assert_sound(surface.positions, surface.faces)
     assert components(surface)[0] == 1
 
@@ -46,7 +46,7 @@ def test_faces_look_outwards(ball: Network) -> None:
 
 def test_blocks_give_the_same_surface_as_the_full_grid(ball: Network) -> None:
     count = 40
-    axis = (np.arange(count + 1) * (2 * LIMIT / count) - LIMIT).astype(np.float32)
+    axis = (np.arange(count + 1) * (2 * CUBE / count) - CUBE).astype(np.float32)
     grid = np.stack(np.meshgrid(axis, axis, axis, indexing="ij"), axis=-1).reshape(-1, 3)
     inside = (evaluate(ball, grid) < 0).reshape((count + 1,) * 3)
     crossed = sum(int(np.diff(inside, axis=axis).sum()) for axis in range(3))

@@ -5,8 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from nispcodec.extract.components import components
+from nispcodec.extract.config import SimplifyConfig
 from nispcodec.extract.isosurface import Surface
-from nispcodec.extract.manifold import RETREAT, manifold
+from nispcodec.extract.manifold import manifold
 from tests.extract.surfaces import areas, assert_closed
 
 TETRAHEDRON = np.array([[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])
@@ -35,7 +36,7 @@ def test_two_bodies_at_one_edge_come_apart() -> None:
     assert components(done)[0] == 2
     assert len(np.unique(done.positions, axis=0)) == 8
     reach = np.abs(done.positions[done.faces] - touching.positions[touching.faces])
-    assert 0 < reach.max() <= RETREAT
+    assert 0 < reach.max() <= SimplifyConfig.retreat
 
 
 def test_two_bodies_at_one_vertex_come_apart() -> None:
@@ -65,4 +66,4 @@ def test_a_tunnel_pinched_shut_gets_two_edges() -> None:
     assert_closed(done.faces)
     assert len(done.faces) == len(kept) + 4
     before, after = (areas(each.positions, each.faces).sum() for each in (pinched, done))
-    np.testing.assert_allclose(after, before, rtol=2 * RETREAT)
+    np.testing.assert_allclose(after, before, rtol=2 * SimplifyConfig.retreat)

@@ -8,8 +8,9 @@ import numpy as np
 import pytest
 
 from nispcodec.core.network import Network
+from nispcodec.extract.config import ResolutionConfig
 from nispcodec.extract.isosurface import near_surface
-from nispcodec.extract.meshing import LEAST, MOST, default_resolution
+from nispcodec.extract.meshing import default_resolution
 from nispcodec.extract.thin_walls import thin_share
 from nispcodec.model import NispModel
 from tests import tiny
@@ -32,7 +33,7 @@ def test_thin_walls_are_told_though_no_grid_point_lies_inside(
     thickness: float, least: float, most: float
 ) -> None:
     network = plate(thickness)
-    points, size = near_surface(network, LEAST)
+    points, size = near_surface(network, ResolutionConfig.least)
     assert least <= thin_share(network, points, size, 0.01) <= most
 
 
@@ -53,12 +54,12 @@ def test_islands_in_a_membrane_go_with_it() -> None:
 
 
 def test_default_resolution_follows_the_walls() -> None:
-    assert default_resolution(plate(0.003), 0.0) == MOST
-    assert default_resolution(tiny.octahedron(), 0.0) == LEAST
+    assert default_resolution(plate(0.003), 0.0) == ResolutionConfig.most
+    assert default_resolution(tiny.octahedron(), 0.0) == ResolutionConfig.least
 
 
 @pytest.mark.parametrize(
-    ("half_thickness", "expected"), [(0.05, LEAST), (0.004, 510), (1e-4, 2048)]
+    ("half_thickness", "expected"), [(0.05, ResolutionConfig.least), (0.004, 510), (1e-4, 2048)]
 )
 def test_sheets_get_a_cell_for_half_their_thickness(half_thickness: float, expected: int) -> None:
     document = replace(tiny.document(tiny.octahedron()), half_thickness=half_thickness)
@@ -66,4 +67,4 @@ def test_sheets_get_a_cell_for_half_their_thickness(half_thickness: float, expec
 
 
 def test_no_surface_at_all_has_a_default_too() -> None:
-    assert default_resolution(tiny.octahedron(-1), 0.0) == LEAST
+    assert default_resolution(tiny.octahedron(-1), 0.0) == ResolutionConfig.least

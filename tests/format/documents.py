@@ -11,7 +11,6 @@ from nispcodec.core.asset import (
     ALPHA_MODES,
     FILTERS,
     MIME_TYPES,
-    SLOTS,
     WRAPS,
     Material,
     Texture,
@@ -19,6 +18,7 @@ from nispcodec.core.asset import (
 )
 from nispcodec.core.document import ChartTable, Document, Frame
 from nispcodec.core.network import ACTIVATIONS, CONDITIONINGS, OUTPUTS, Network, NetworkSpec
+from nispcodec.core.slots import SLOTS
 
 
 def network(spec: NetworkSpec, seed: int = 0, scale: float = 1.0) -> Network:

@@ -2,20 +2,20 @@
 
 from __future__ import annotations
 
-from types import ModuleType
 from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 
 from nispcodec.format.codings import bits, coo, csc, csr, dense, dia, entropy, frequency_model, rans
 from nispcodec.format.codings.reader import Reader, varint
+from nispcodec.format.codings.registry import REGISTRY, Codec
 from nispcodec.format.constants import MAX_CELLS, MAX_SYMBOL
 
-OWN = {"dense": dense, "coo": coo, "csc": csc, "csr": csr, "dia": dia}
+OWN = {coding.name: coding.codec for coding in REGISTRY if coding.codec}
 FLOATS = st.floats(width=32, allow_nan=False, allow_infinity=False).map(lambda x: x + 0.0)
 HALVES = st.floats(width=16, allow_nan=False, allow_infinity=False).map(lambda x: x + 0.0)
 SYMBOLS = st.integers(-MAX_SYMBOL, MAX_SYMBOL)
@@ -30,7 +30,7 @@ def matrices() -> st.SearchStrategy[np.ndarray[Any, Any]]:
     return st.one_of(floats, symbols)
 
 
-def through(coding: ModuleType, matrix: np.ndarray[Any, Any]) -> np.ndarray[Any, Any]:
+def through(coding: Codec, matrix: np.ndarray[Any, Any]) -> np.ndarray[Any, Any]:
     """The matrix encoded and decoded, with nothing left to read."""
     reader = Reader("NETS", coding.encode(matrix))
     decoded = coding.decode(reader, matrix.shape, matrix.dtype.kind == "i")
@@ -50,13 +50,11 @@ def streamed(values: list[np.ndarray[Any, Any]]) -> list[np.ndarray[Any, Any]]:
 
 @pytest.mark.parametrize("name", OWN)
 @given(matrix=matrices())
-@settings(deadline=None)
 def test_any_matrix(name: str, matrix: np.ndarray[Any, Any]) -> None:
     np.testing.assert_array_equal(through(OWN[name], matrix), matrix)
 
 
 @given(st.lists(matrices(), min_size=1, max_size=4))
-@settings(deadline=None)
 def test_any_stream(together: list[np.ndarray[Any, Any]]) -> None:
     runs = [matrix.ravel() for matrix in together]
     for decoded, run in zip(streamed(runs), runs, strict=True):
@@ -102,7 +100,6 @@ def test_numbers_take_the_smallest_kind() -> None:
 
 
 @given(st.integers(1, 2**31))
-@settings(deadline=None)
 def test_cells(limit: int) -> None:
     cells, left_open = frequency_model.cells(limit)
     assert cells <= MAX_CELLS
@@ -111,7 +108,6 @@ def test_cells(limit: int) -> None:
 
 
 @given(hnp.arrays(np.int64, st.integers(2, 257), elements=st.integers(0, 10**6)).filter(np.any))
-@settings(deadline=None)
 def test_the_curve_that_fits(counts: np.ndarray[Any, Any]) -> None:
     best, claimed = frequency_model.fit(counts)
     bits_each = rans.SCALE_BITS - np.log2(np.diff(best.starts(len(counts) - 1)))
@@ -122,7 +118,6 @@ def test_the_curve_that_fits(counts: np.ndarray[Any, Any]) -> None:
 
 
 @given(st.data())
-@settings(deadline=None)
 def test_rans(data: st.DataObject) -> None:
     tokens, runs = [], []
     for _ in range(data.draw(st.integers(1, 3))):
@@ -164,7 +159,6 @@ def test_pruned_symbols_cost_little_more_than_their_entropy() -> None:
 
 
 @given(st.lists(st.tuples(st.integers(0, 2**32 - 1), st.integers(0, 32)), max_size=40))
-@settings(deadline=None)
 def test_bits(pairs: list[tuple[int, int]]) -> None:
     widths = np.array([width for _, width in pairs], np.uint8)
     values = np.array([value % 2**width for value, width in pairs], np.uint32)
@@ -174,7 +168,6 @@ def test_bits(pairs: list[tuple[int, int]]) -> None:
 
 
 @given(st.integers(0, 2**35 - 1))
-@settings(deadline=None)
 def test_varint(value: int) -> None:
     reader = Reader("NETS", varint(value))
     assert reader.varint("value", 2**35) == value

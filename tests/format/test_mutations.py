@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from nispcodec.core.errors import FormatError
 from nispcodec.format import pack, unpack
-from nispcodec.format.constants import CODINGS
+from nispcodec.format.codings.registry import CODINGS
 from nispcodec.format.container import content, read_container
 from tests.conformance.builder import Row, change, container
 from tests.format.documents import full, tiny
@@ -83,14 +83,13 @@ def test_every_single_byte_of_the_content_changed(data: bytes, code: bytes) -> N
 
 
 @given(st.binary(max_size=200))
-@settings(deadline=None)
 def test_noise(data: bytes) -> None:
     survives(data)
     survives(FILES[0][:8] + data)
 
 
 @given(st.data())
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=300)
 def test_spliced_content(data: st.DataObject) -> None:
     rows = raw_rows(data.draw(st.sampled_from(FILES)))
     index = data.draw(st.integers(0, len(rows) - 1))

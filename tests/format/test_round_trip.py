@@ -13,13 +13,13 @@ from nispcodec.core.document import ChartTable, Document, Frame
 from nispcodec.core.errors import FormatError
 from nispcodec.core.network import NetworkSpec
 from nispcodec.format import inspect, metadata, pack, unpack
-from nispcodec.format.constants import CODINGS
+from nispcodec.format.codings.registry import CODINGS
 from tests.format.documents import assert_same, documents, full, network, quantized, tiny
 from tests.format.test_measures import ENCODERS
 
 
 @given(documents())
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 def test_any_document(document: Document) -> None:
     data = pack(document)
     assert_same(unpack(data), document)
@@ -33,7 +33,7 @@ def test_every_coding_keeps_every_document(coding: str) -> None:
 
 
 @given(documents())
-@settings(max_examples=10, deadline=None)
+@settings(max_examples=10)
 def test_every_coding_keeps_any_document(document: Document) -> None:
     for coding in CODINGS:
         assert_same(unpack(pack(document, coding)), document)

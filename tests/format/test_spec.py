@@ -8,10 +8,10 @@ from collections import defaultdict
 import numpy as np
 import pytest
 
-from nispcodec.core import asset, network
+from nispcodec.core import asset, network, slots
 from nispcodec.core.texture import sample_texture
 from nispcodec.format import constants, inspect, pack, steps, unpack
-from nispcodec.format.codings import frequency_model
+from nispcodec.format.codings import frequency_model, registry
 from nispcodec.format.codings.reader import Reader
 from nispcodec.format.container import content, read_container
 from nispcodec.format.record import Record
@@ -21,7 +21,12 @@ from tests.format.documents import full
 from tests.format.golden import slab
 from tests.tiny import random_network
 
-NAMES = vars(network) | vars(asset) | vars(constants)
+NAMES = (
+    vars(network)
+    | vars(asset)
+    | vars(constants)
+    | {"CODINGS": registry.CODINGS, "SLOTS": slots.SLOTS}
+)
 DECODER = spec.decoder()
 
 
@@ -139,7 +144,7 @@ def test_its_container_reader() -> None:
         assert row[4] == section.decoded_length
 
 
-@pytest.mark.parametrize("coding", [None, *constants.CODINGS])
+@pytest.mark.parametrize("coding", [None, *registry.CODINGS])
 def test_its_weight_decoder(coding: str | None) -> None:
     document = full()
     data = pack(document, coding)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from nispcodec.format import pack
@@ -17,7 +17,6 @@ def test_valid_files_stay() -> None:
 
 
 @given(st.integers(100, 140), st.integers(1, 255))
-@settings(deadline=None)
 def test_a_changed_payload_passes_the_checksums(place: int, change: int) -> None:
     data = bytearray(pack(tiny()))
     data[place % len(data)] ^= change if place % len(data) >= 64 else 0
@@ -26,6 +25,5 @@ def test_a_changed_payload_passes_the_checksums(place: int, change: int) -> None
 
 
 @given(st.binary(max_size=100))
-@settings(deadline=None)
 def test_any_bytes_will_do(data: bytes) -> None:
     assert len(repair(data)) == len(data)

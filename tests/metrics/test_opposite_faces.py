@@ -27,16 +27,16 @@ def surface(triangles: Float64Array) -> Surface:
 
 
 def test_twins_have_the_same_corners_the_other_way_round() -> None:
-    assert Surface.of(flag(0), frame_of(flag(0))).twins.tolist() == [2, 3, 0, 1]
+    assert Surface.of(flag(0), frame_of(flag(0))).opposite_faces.tolist() == [2, 3, 0, 1]
     again = surface(np.concatenate([CARD, CARD]).astype(float))
-    assert again.twins.tolist() == [-1] * 4
+    assert again.opposite_faces.tolist() == [-1] * 4
 
 
 @pytest.mark.parametrize("body", [cube((-1, -1, -1), 2.0), hemisphere()])
 def test_symmetric_bodies_have_none(body: Float64Array) -> None:
     both = np.concatenate([body, (body * [1, 1, -1])[:, ::-1]])
-    assert (surface(body).twins == -1).all()
-    assert (surface(both).twins == -1).all()
+    assert (surface(body).opposite_faces == -1).all()
+    assert (surface(both).opposite_faces == -1).all()
 
 
 def test_the_closest_point_is_on_the_face_that_looks_there() -> None:

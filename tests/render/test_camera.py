@@ -50,7 +50,7 @@ def test_every_view_sees_the_whole_unit_ball(fov: float) -> None:
 
 def test_zoom_narrows_the_picture() -> None:
     near, far = Camera(zoom=4), Camera()
-    assert near.reach == pytest.approx(far.reach / 4)
+    assert near.half_width == pytest.approx(far.half_width / 4)
     np.testing.assert_array_equal(near.eye, far.eye)
 
 

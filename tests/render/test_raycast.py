@@ -36,7 +36,7 @@ def test_the_ground_is_transparent_and_white_below() -> None:
 def test_silhouette_of_a_sphere() -> None:
     ball = sphere()
     (picture,) = render_views(ball, [FRONT], 100)
-    seen = np.tan(np.arcsin(1 / np.linalg.norm(FRONT.eye))) / FRONT.reach
+    seen = np.tan(np.arcsin(1 / np.linalg.norm(FRONT.eye))) / FRONT.half_width
     assert picture[..., 3].mean() == pytest.approx(np.pi * seen**2 / 4, rel=0.01)
 
 

@@ -11,6 +11,7 @@ import numpy as np
 
 from nispcodec.core.arrays import Float64Array
 from nispcodec.core.asset import Material, TextureMap
+from nispcodec.core.slots import BY_NAME, SLOT_TABLE
 from nispcodec.io.folder import Folder
 from nispcodec.io.images import TextureShelf
 from nispcodec.io.read.gltf_buffers import Buffers, read_uri
@@ -18,7 +19,6 @@ from nispcodec.io.read.gltf_json import Element
 
 _WRAPS = {10497: "repeat", 33071: "clamp", 33648: "mirror"}
 _FILTERS = {9728: "nearest", 9729: "linear"}
-_STRENGTHS = {"normal": "scale", "occlusion": "strength"}
 _IMAGE_EXTENSIONS = ("EXT_texture_webp", "EXT_texture_avif")
 _GLOSSY = "KHR_materials_pbrSpecularGlossiness"
 
@@ -105,7 +105,8 @@ class GltfMaterials:
         place = self._images[image]
         if place is None:
             return None
-        strength = info.number(_STRENGTHS[slot], 1.0) if slot in _STRENGTHS else 1.0
+        key = BY_NAME[slot].gltf_strength
+        strength = info.number(key, 1.0) if key else 1.0
         wrap, texture_filter = self._sampling(texture)
         return TextureMap(place, wrap, texture_filter, strength)
 
@@ -167,19 +168,13 @@ class GltfMaterials:
 
 def _texture_infos(material: Element, glossy: Element | None) -> Iterator[tuple[str, Element]]:
     """Slot and textureInfo of each map, base color first."""
-    metallic = material.get("pbrMetallicRoughness")
-    candidates = (
-        ("base_color", glossy, "diffuseTexture"),
-        ("base_color", metallic, "baseColorTexture"),
-        ("metallic_roughness", metallic, "metallicRoughnessTexture"),
-        ("normal", material, "normalTexture"),
-        ("occlusion", material, "occlusionTexture"),
-        ("emissive", material, "emissiveTexture"),
-    )
-    for slot, owner, key in candidates:
-        info = None if owner is None else owner.get(key)
+    for slot in SLOT_TABLE:
+        owner = material.get(slot.gltf_owner) if slot.gltf_owner else material
+        info = None if owner is None else owner.get(slot.gltf_key)
+        if slot.name == "base_color" and glossy is not None:
+            info = glossy.get("diffuseTexture") or info
         if info is not None:
-            yield slot, info
+            yield slot.name, info
 
 
 Factors = tuple[tuple[float, float, float, float], float, float]

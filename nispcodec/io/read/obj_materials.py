@@ -6,18 +6,13 @@ from collections.abc import Sequence
 
 from nispcodec.core.asset import Material, Texture, TextureMap
 from nispcodec.core.errors import MeshError
+from nispcodec.core.slots import SLOT_TABLE
 from nispcodec.io.folder import Folder
 from nispcodec.io.images import TextureShelf, is_gray
 from nispcodec.io.read.mtl import MapStatement, MtlMaterial, is_number, parse_mtl
 
 # Keyword of an image statement -> slot; of two for one slot the first in this list wins.
-SLOT_OF = {
-    "map_kd": "base_color",
-    "norm": "normal",
-    "map_bump": "normal",
-    "bump": "normal",
-    "map_ke": "emissive",
-}
+SLOT_OF = {keyword: slot.name for slot in SLOT_TABLE for keyword in slot.mtl_read}
 # Options that move UVs, and that change the image's values.
 _MOVING = {"-o", "-s", "-t"}
 _CHANGING = {"-boost", "-cc", "-imfchan", "-mm"}

@@ -12,6 +12,7 @@ import numpy as np
 
 from nispcodec.core.arrays import AnyArray, Float32Array, IndexArray
 from nispcodec.core.asset import Material, Texture, TexturedMesh, TextureMap
+from nispcodec.core.slots import BY_NAME, Slot
 from nispcodec.core.texture import srgb_to_linear
 from nispcodec.io.write.vertices import origin, split_vertices, vertex_normals
 
@@ -132,8 +133,9 @@ class _Builder:
             item["alphaCutoff"] = material.alpha_cutoff
         # A face without UV cannot look anything up: its material keeps the factors only.
         for slot, used in material.maps.items() if has_uv else ():
-            name, parent = _slot(slot, pbr, item)
-            parent[name] = self.texture(textures, used) | _strength(slot, used)
+            known = BY_NAME[slot]
+            owner = item[known.gltf_owner] if known.gltf_owner else item
+            owner[known.gltf_key] = self.texture(textures, used) | _strength(known, used)
         return self.add("materials", item)
 
     def texture(self, textures: tuple[Texture, ...], used: TextureMap) -> Json:
@@ -164,17 +166,8 @@ def _groups(mesh: TexturedMesh) -> Iterable[tuple[int, bool, IndexArray]]:
         yield key // 2, bool(key % 2), np.flatnonzero(keys == key)
 
 
-def _slot(slot: str, pbr: Json, item: Json) -> tuple[str, Json]:
-    if slot == "base_color":
-        return "baseColorTexture", pbr
-    if slot == "metallic_roughness":
-        return "metallicRoughnessTexture", pbr
-    return f"{slot}Texture", item
-
-
-def _strength(slot: str, used: TextureMap) -> Json:
-    names = {"normal": "scale", "occlusion": "strength"}
-    return {names[slot]: used.strength} if slot in names and used.strength != 1 else {}
+def _strength(slot: Slot, used: TextureMap) -> Json:
+    return {slot.gltf_strength: used.strength} if slot.gltf_strength and used.strength != 1 else {}
 
 
 def _embeddable(texture: Texture) -> tuple[bytes, str]:

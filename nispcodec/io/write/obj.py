@@ -9,13 +9,7 @@ import numpy as np
 
 from nispcodec.core.arrays import AnyArray, Float32Array
 from nispcodec.core.asset import Material, TexturedMesh, TextureMap
-
-# Occlusion and metallic-roughness share one image in glTF; MTL has no words for that.
-KEYWORDS = {
-    "base_color": ("map_Kd",),
-    "normal": ("norm", "map_Bump"),
-    "emissive": ("map_Ke",),
-}
+from nispcodec.core.slots import BY_NAME
 
 
 def obj_files(
@@ -32,7 +26,7 @@ def obj_files(
     images = [f"{stem}_{name}" for name in _unique([_plain(t.name) for t in mesh.textures])]
     names = _unique([_plain(material.name) for material in mesh.materials])
     slots = [slots for material in mesh.materials for slots in material.maps.items()]
-    wanted = {used.texture for slot, used in slots if slot in KEYWORDS}
+    wanted = {used.texture for slot, used in slots if BY_NAME[slot].mtl_write}
     files = {images[index]: mesh.textures[index].data for index in sorted(wanted)}
     materials = zip(mesh.materials, names, strict=True)
     mtl = "\n".join(_mtl(material, name, images) for material, name in materials)
@@ -85,13 +79,13 @@ def _mtl(material: Material, name: str, images: list[str]) -> str:
         "Ke {:.6g} {:.6g} {:.6g}".format(*material.emissive),
     ]
     for slot, used in material.maps.items():
-        lines += [_map(keyword, used, images) for keyword in KEYWORDS.get(slot, ())]
+        lines += [_map(keyword, used, images) for keyword in BY_NAME[slot].mtl_write]
     return "\n".join(lines) + "\n"
 
 
 def _map(keyword: str, used: TextureMap, images: list[str]) -> str:
     options = " -clamp on" if used.wrap == ("clamp", "clamp") else ""
-    if keyword in KEYWORDS["normal"] and used.strength != 1:
+    if keyword in BY_NAME["normal"].mtl_write and used.strength != 1:
         options += f" -bm {used.strength:.6g}"
     return f"{keyword}{options} {images[used.texture]}"
 

@@ -10,7 +10,8 @@ from hypothesis import strategies as st
 from nispcodec.core.asset import TexturedMesh
 from nispcodec.core.errors import MeshError
 from nispcodec.io.folder import Folder
-from nispcodec.io.read.plain import read_off, read_stl
+from nispcodec.io.read.off import read_off
+from nispcodec.io.read.stl import read_stl
 from tests.io.files import outcome
 
 NOWHERE = Folder(Path("/nonexistent"))

@@ -1,0 +1,131 @@
+"""Every tuned number of the extraction, with its unit and the reason for it.
+
+Lengths and areas are in the normalized frame (radius 1) unless said.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+
+@dataclass(frozen=True)
+class ResolutionConfig:
+    """How many cells along the cube's edge, where nobody says.
+
+    least            what most assets need ...
+    most             ... and what those with thin walls get at most, as triangles allow
+    thin_share       share of the surface with walls thinner than a cell from which on walls count
+                     as thin
+    faces            triangles that thin walls may cost
+    faces_per_block  of the surface that `least` cells are looked into
+    highest          cells of anything nobody asked for: memory grows with the square
+    newton_steps     that bring a point near the surface onto it, before walls are measured
+    on_surface       a field smaller than this is at the surface
+    """
+
+    least: int = 256
+    most: int = 512
+    thin_share: float = 0.02
+    faces: int = 500_000
+    faces_per_block: float = 6.6
+    highest: int = 2048
+    newton_steps: int = 3
+    on_surface: float = 1e-3
+
+
+@dataclass(frozen=True)
+class IsosurfaceConfig:
+    """How the zero set is found and where its vertices lie.
+
+    root          blocks along the cube's edge that the search starts from
+    margin        how much faster than measured the field may grow
+    newton_steps  that bring vertices onto the zero set
+    clearance     share of a cell that vertices keep from grid points, where several would coincide
+    """
+
+    root: int = 32
+    margin: float = 1.25
+    newton_steps: int = 2
+    clearance: float = 0.01
+
+
+@dataclass(frozen=True)
+class ComponentConfig:
+    """Which connected components are noise of the field.
+
+    Slopes are relative to the whole surface's.
+
+    steep               noise between the samples was seen at 3 to 7
+    small_share         of all vertices: larger components are no noise, however steep
+    flat                components below are mostly scraps of real detail that the fit could not
+                        hold: only isolated ones are dropped
+    small_area          of a component that may be dropped for being flat and isolated ...
+    isolated            ... which it is with no other component so near
+    single_cell         vertices of a flat component about one cell, of which the grid tells no
+                        shape: meshes go without. Rays do not, as what is left out for them is left
+                        out by larger cells
+    hollow_share        of all vertices, below which a closed hollow is dropped
+    slope_samples       vertices that tell the whole surface's slope
+    neighbor_vertices   among which the nearest of another component is looked for: one is near any
+                        place on the surface, a quarter of `isolated` or less away
+    """
+
+    steep: float = 1.7
+    small_share: float = 0.05
+    flat: float = 0.6
+    small_area: float = 3e-3
+    isolated: float = 0.02
+    single_cell: int = 8
+    hollow_share: float = 0.03
+    slope_samples: int = 20_000
+    neighbor_vertices: int = 200_000
+
+
+@dataclass(frozen=True)
+class SeamConfig:
+    """Where charts meet.
+
+    small_area      a patch of one chart that is smaller is a mistake of the field ...
+    small_vertices  ... and so is one of fewer vertices
+    votes           rounds in which neighbors decide whose it is
+    bisections      that find the border on an edge
+    clearance       share of an edge that cuts keep from its ends: no needles, no empty triangles
+    """
+
+    small_area: float = 1.2e-4
+    small_vertices: int = 2
+    votes: int = 3
+    bisections: int = 8
+    clearance: float = 0.02
+
+
+@dataclass(frozen=True)
+class SimplifyConfig:
+    """Fewer triangles.
+
+    aggressiveness  how eagerly long edges collapse, 0 to 10: above 5 thin parts fold over, below 5
+                    counts are missed
+    roughness       share of a cell by which vertices are moved first: on exactly flat parts all
+                    quadrics are 0 and collapses get stuck
+    shrinkage       triangles that are left after each step of a search for the fewest
+    face_fittings   tries to meet a number of faces, seams included
+    retreat         how far the copies of a vertex draw back to their own faces, as a share of
+                    these faces' size
+    """
+
+    aggressiveness: int = 5
+    roughness: float = 1e-3
+    shrinkage: float = 0.7
+    face_fittings: int = 4
+    retreat: float = 1e-3
+
+
+@dataclass(frozen=True)
+class ExtractConfig:
+    """All of them."""
+
+    resolution: ResolutionConfig = field(default_factory=ResolutionConfig)
+    isosurface: IsosurfaceConfig = field(default_factory=IsosurfaceConfig)
+    components: ComponentConfig = field(default_factory=ComponentConfig)
+    seams: SeamConfig = field(default_factory=SeamConfig)
+    simplify: SimplifyConfig = field(default_factory=SimplifyConfig)
