@@ -12,13 +12,12 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from importlib import import_module
-from typing import Any
 
 import click
 
 from benchmarks.measuring.build import HERE
 from benchmarks.measuring.history import commits_since, committed, date_of
-from benchmarks.measuring.result_file import Record, read_result
+from benchmarks.measuring.result_file import Record, commits_of, read_result
 from benchmarks.measuring.target import Asked
 from benchmarks.report.committed import RESULTS, CommittedResult
 from benchmarks.report.markdown import columns, table
@@ -37,16 +36,6 @@ class Age:
 
     def __str__(self) -> str:
         return f"{self.commit} ({date_of(HERE, self.commit) or 'not in the history'})"
-
-
-def commits_of(result: Any) -> Iterator[str]:
-    """Every commit that a result or a record in it names, the same one more than once."""
-    values = result.values() if isinstance(result, dict) else result
-    if isinstance(result, dict) and isinstance(result.get("commit"), str):
-        yield result["commit"]
-    for value in values:
-        if isinstance(value, dict | list):
-            yield from commits_of(value)
 
 
 def ages(result: CommittedResult) -> list[Age]:

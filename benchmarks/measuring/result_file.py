@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -32,3 +32,13 @@ def read_result(path: Path) -> Record:
 def result_so_far(path: Path) -> Record:
     """What an earlier run has left, to go on with; empty where there is no file."""
     return read_result(path) if path.exists() else {}
+
+
+def commits_of(result: Any) -> Iterator[str]:
+    """Every commit that a result or a record in it names, the same one more than once."""
+    values = result.values() if isinstance(result, dict) else result
+    if isinstance(result, dict) and isinstance(result.get("commit"), str):
+        yield result["commit"]
+    for value in values:
+        if isinstance(value, dict | list):
+            yield from commits_of(value)

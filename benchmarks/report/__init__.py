@@ -1,1 +1,1 @@
-"""What was found, to look at: an HTML page, plots, the tables of the README."""
+"""What was found, to look at: an HTML page, plots, the tables of docs/benchmarks.md."""

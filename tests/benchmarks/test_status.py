@@ -70,11 +70,6 @@ def test_the_targets_of_every_result_can_be_read(result: CommittedResult) -> Non
     assert not [line for line in status.unmet(result) if line[2].startswith("not read")]
 
 
-def test_commits_are_found_however_deep() -> None:
-    result = {"commit": "a", "assets": {"spot": {"commit": "b"}}, "runs": [{"commit": "b"}, 3]}
-    assert sorted(status.commits_of(result)) == ["a", "b", "b"]
-
-
 def test_only_commits_that_touch_the_paths_count(tmp_path: Path, commit: Commit) -> None:
     first = commit("train/loop.py")
     for name in ("docs/words.md", "train/loop.py", "fit/loop.py"):

@@ -1,11 +1,11 @@
-"""Write the measured tables and the plot into the README, from results that are committed.
+"""Write the measured tables and the plot into docs/benchmarks.md, from results that are committed.
 
-    python -m benchmarks.report.readme --bench build/bench
+    python -m benchmarks.report.document --bench build/bench
 
 The tables are of what `benchmarks.headline.main_job`, `benchmarks.headline.duel` and
 `benchmarks.studies.crossover` found. --bench keeps what `python -m benchmarks` left in that folder
 as benchmarks/results/bench.{json,csv} and docs/rate_distortion.png: of these come the delta rates
-and the sizes of the other codecs.
+and the sizes of the other codecs. Each table says at which commit its numbers were measured.
 """
 
 from __future__ import annotations
@@ -19,24 +19,24 @@ import click
 from benchmarks.headline.duel import PRECISE
 from benchmarks.headline.duel import RESULTS as DUEL
 from benchmarks.headline.main_job import RESULTS
-from benchmarks.measuring.result_file import read_result, write_result
+from benchmarks.measuring.result_file import Record, commits_of, read_result, write_result
 from benchmarks.report.markdown import table
 from benchmarks.studies.crossover import RESULTS as CROSSOVER
 from nispcodec.core.atomic_write import write_atomic
 
-README = Path("README.md")
-BEGIN, END = "<!-- table: python -m benchmarks.report.readme -->\n", "<!-- end of table -->\n"
+DOCUMENT = Path("docs/benchmarks.md")
+BEGIN, END = "<!-- table: python -m benchmarks.report.document -->\n", "<!-- end of table -->\n"
 HEAD = (
     "asset", "faces", "OBJ", "`.nisp`, no textures", "encode", "distance", "UV median", "charts",
     "color",
 )  # fmt: skip
-PEERS_BEGIN = "<!-- peers: python -m benchmarks.report.readme -->\n"
+PEERS_BEGIN = "<!-- peers: python -m benchmarks.report.document -->\n"
 PEERS_END = "<!-- end of peers -->\n"
 PEERS_HEAD = (
     "kB, no textures", "`.nisp`", "simplify + Draco, as near", "and UVs as near", "ours / theirs",
 )  # fmt: skip
 CURVES = {"distance": "delta rate, distance", "uv": "delta rate, UV"}
-CROSSING_BEGIN = "<!-- crossover: python -m benchmarks.report.readme -->\n"
+CROSSING_BEGIN = "<!-- crossover: python -m benchmarks.report.document -->\n"
 CROSSING_END = "<!-- end of crossover -->\n"
 CROSSING_HEAD = ("triangles", "`.nisp`", "distance", "simplify + Draco, as near", "Draco")
 OTHERS = {
@@ -69,8 +69,8 @@ def measured() -> str:
     results = read_result(RESULTS)
     rows = [row(name, record) for name, record in sorted(results["assets"].items())]
     machine = results["machine"]
-    where = f"\nMeasured on {machine['cores']} cores, {machine['processor']}.\n"
-    return table(HEAD, rows) + where
+    where = f"on {machine['cores']} cores, {machine['processor']}"
+    return table(HEAD, rows) + f"\nMeasured at {commits(results)}, {where}.\n"
 
 
 def compared() -> str:
@@ -88,12 +88,13 @@ def compared() -> str:
         for name, duel in sorted(found["assets"].items())
     ]
     head = [*PEERS_HEAD, *CURVES.values(), *OTHERS]
-    return table(head, lines) + means_line(found["means"]["distance and uv"])
+    when = f"Delta rates and all other codecs were measured at {commits(read_result(BENCH))}.\n"
+    return table(head, lines) + means_line(found["means"]["distance and uv"]) + when
 
 
 def crossing() -> str:
     """The table of `benchmarks.studies.crossover`."""
-    levels = read_result(CROSSOVER)["levels"]
+    results = read_result(CROSSOVER)
     lines = [
         [
             f"{level['faces']:,}",
@@ -102,9 +103,14 @@ def crossing() -> str:
             f"{kilobytes(level['simplified_draco']['same_distance_bytes'])} kB",
             f"{kilobytes(level['draco']['bytes'])} kB",
         ]
-        for level in levels
+        for level in results["levels"]
     ]
-    return table(CROSSING_HEAD, lines)
+    return table(CROSSING_HEAD, lines) + f"\nMeasured at {commits(results)}.\n"
+
+
+def commits(results: Record) -> str:
+    """The commits that a result's records name, each once, in words."""
+    return "commit " + ", ".join(sorted(set(commits_of(results))))
 
 
 def means_line(means: dict[str, float]) -> str:
@@ -155,17 +161,20 @@ def replaced(text: str, begin: str, end: str, content: str) -> str:
     return before + begin + content + end + rest.split(end, 1)[1]
 
 
+def written(text: str) -> str:
+    """The document with its tables as the committed results have them."""
+    text = replaced(text, BEGIN, END, measured())
+    text = replaced(text, PEERS_BEGIN, PEERS_END, compared())
+    return replaced(text, CROSSING_BEGIN, CROSSING_END, crossing())
+
+
 @click.command()
 @click.option("--bench", type=click.Path(path_type=Path, exists=True), help="Keep these results.")
 def main(bench: Path | None) -> None:
     """Replace what stands between the markers."""
     if bench is not None:
         keep(bench)
-    text = README.read_text(encoding="utf-8")
-    text = replaced(text, BEGIN, END, measured())
-    text = replaced(text, PEERS_BEGIN, PEERS_END, compared())
-    text = replaced(text, CROSSING_BEGIN, CROSSING_END, crossing())
-    write_atomic(README, text.encode())
+    write_atomic(DOCUMENT, written(DOCUMENT.read_text(encoding="utf-8")).encode())
 
 
 if __name__ == "__main__":

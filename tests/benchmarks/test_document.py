@@ -1,7 +1,18 @@
 from __future__ import annotations
 
+import pytest
+
+from benchmarks.measuring.build import HERE
+from benchmarks.report.document import (
+    DOCUMENT,
+    commits,
+    duel_cells,
+    percentage,
+    replaced,
+    size_of,
+    written,
+)
 from benchmarks.report.markdown import columns, table
-from benchmarks.report.readme import duel_cells, percentage, replaced, size_of
 
 
 def test_only_what_stands_between_the_markers_changes() -> None:
@@ -43,3 +54,15 @@ def test_a_table_has_a_rule_below_its_head() -> None:
 
 def test_columns_are_as_wide_as_their_longest_text() -> None:
     assert columns(["a", "b"], [["long", "1"], ["", ""]]) == "a     b\nlong  1\n\n"
+
+
+def test_the_document_says_what_the_results_say(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(HERE)
+    text = DOCUMENT.read_text(encoding="utf-8")
+    assert written(text) == text
+
+
+def test_a_table_says_where_it_was_measured() -> None:
+    assert (
+        commits({"assets": {"a": {"commit": "two"}, "b": {"commit": "one"}}}) == "commit one, two"
+    )
