@@ -1,5 +1,5 @@
 # make demo: set up, encode a sample asset, decode it, show sizes and errors
-# make test: set up, then everything that CI runs
+# make test: set up, then everything that CI runs; ends with the age of every result and the missed targets
 # make fuzz: RUNS files of a coverage-guided fuzzer against the parser
 # make bench: every codec on the assets in ASSETS, into build/bench/report.html; one to three hours, goes on where it stopped
 
@@ -36,6 +36,7 @@ lint: setup
 
 test: lint
 	$(BIN)/pytest -n 2
+	$(BIN)/python -m benchmarks.status
 
 fuzz: setup
 	$(BIN)/pip install --disable-pip-version-check -q -c constraints.txt -e '.[fuzz]'

@@ -1,1 +1,1 @@
-"""Measurements that the README and the issues quote."""
+"""Measurements that the README and the decision records quote."""

@@ -1,5 +1,5 @@
 """`python -m benchmarks`, `make bench`."""
 
-from benchmarks.command import main
+from benchmarks.rate_distortion.command import main
 
 main()

@@ -10,7 +10,7 @@ from __future__ import annotations
 from importlib import import_module
 from typing import Protocol, cast
 
-from benchmarks.source import Source
+from benchmarks.assets.source import Source
 from nispcodec.core.asset import TexturedMesh
 
 Setting = dict[str, str | int | float]

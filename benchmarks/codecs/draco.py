@@ -11,9 +11,9 @@ from collections.abc import Sequence
 import DracoPy
 import numpy as np
 
+from benchmarks.assets.corners import Corners, corners_of, mesh_of
+from benchmarks.assets.source import Source
 from benchmarks.codecs import Setting
-from benchmarks.corners import Corners, corners_of, mesh_of
-from benchmarks.source import Source
 from nispcodec.core.arrays import AnyArray
 from nispcodec.core.asset import TexturedMesh
 

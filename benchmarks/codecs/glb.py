@@ -9,9 +9,9 @@ from typing import Any
 
 import numpy as np
 
+from benchmarks.assets.corners import corners_of
+from benchmarks.assets.source import Source
 from benchmarks.codecs import Setting
-from benchmarks.corners import corners_of
-from benchmarks.source import Source
 from nispcodec.core.arrays import AnyArray
 from nispcodec.core.asset import TexturedMesh
 from nispcodec.io.folder import Folder

@@ -10,8 +10,8 @@ import subprocess
 import tempfile
 from pathlib import Path
 
+from benchmarks.assets.source import Source
 from benchmarks.codecs import Setting, Unavailable, glb
-from benchmarks.source import Source
 from nispcodec.core.asset import TexturedMesh
 
 LOCAL = Path("node_modules/.bin/gltfpack")

@@ -7,8 +7,8 @@ from dataclasses import replace
 from typing import Any
 
 import nispcodec
+from benchmarks.assets.source import SEED, Source
 from benchmarks.codecs import Setting
-from benchmarks.source import SEED, Source
 from nispcodec.core.asset import TexturedMesh
 from nispcodec.encode.config import PRESETS
 from nispcodec.format import pack, unpack

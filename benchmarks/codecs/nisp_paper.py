@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import Any
 
+from benchmarks.assets.source import Source
 from benchmarks.codecs import Setting
 from benchmarks.codecs.nisp import PAPER, decode, encoded
-from benchmarks.source import Source
 
 __all__ = ["decode", "encode", "settings"]
 

@@ -6,9 +6,9 @@ from math import ceil, log10
 
 import numpy as np
 
+from benchmarks.assets.source import Source
 from benchmarks.codecs import Setting
 from benchmarks.codecs.glb import with_materials
-from benchmarks.source import Source
 from nispcodec.core.arrays import AnyArray
 from nispcodec.core.asset import TexturedMesh
 from nispcodec.io.folder import Folder

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import zstandard
 
+from benchmarks.assets.source import Source
 from benchmarks.codecs import Setting, obj
 from benchmarks.codecs.obj import settings
-from benchmarks.source import Source
 from nispcodec.core.asset import TexturedMesh
 
 __all__ = ["decode", "encode", "settings"]

@@ -9,11 +9,11 @@ from collections.abc import Sequence
 from importlib.util import find_spec
 from itertools import product
 
+from benchmarks.assets.corners import corners_of
+from benchmarks.assets.simplify import simplified
+from benchmarks.assets.source import Source
 from benchmarks.codecs import Setting, Unavailable
 from benchmarks.codecs.draco import decode, encode_corners
-from benchmarks.corners import corners_of
-from benchmarks.simplify import simplified
-from benchmarks.source import Source
 
 __all__ = ["decode", "encode", "settings"]
 

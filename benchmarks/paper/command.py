@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Sequence
 from dataclasses import asdict
 from itertools import groupby
@@ -10,12 +9,13 @@ from pathlib import Path
 
 import click
 
-from benchmarks.machine import commit, machine, versions
+from benchmarks.measuring.machine import commit, machine, versions
+from benchmarks.measuring.result_file import Record, write_result
 from benchmarks.paper.quality import quality
 from benchmarks.paper.queries import queries
 from benchmarks.paper.row import Comparison
 from benchmarks.paper.sizes import sizes
-from benchmarks.store import Store
+from benchmarks.rate_distortion.store import Store
 from nispcodec.core.atomic_write import write_atomic
 
 HEAD = "# The paper's numbers beside ours\n\nWritten by `python -m benchmarks.paper`.\n"
@@ -45,8 +45,7 @@ def main(points: Path, output: Path) -> None:
     Training, distortion and pictures need points of `python -m benchmarks --codec nisp`.
     """
     rows = [*sizes(), *queries(), *quality(Store(points))]
-    record = {"commit": commit(), "machine": machine(), "versions": versions()}
-    table = json.dumps(record | {"rows": [asdict(row) for row in rows]}, indent=1)
-    write_atomic(output / "paper.json", table.encode() + b"\n")
+    record: Record = {"commit": commit(), "machine": machine(), "versions": versions()}
+    write_result(output / "paper.json", record | {"rows": [asdict(row) for row in rows]})
     write_atomic(output / "paper.md", markdown(rows).encode())
     click.echo(markdown(rows))

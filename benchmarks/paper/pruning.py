@@ -9,24 +9,22 @@ draws the figure and prints the tables of what is there.
 
 from __future__ import annotations
 
-import json
 import time
 from collections.abc import Sequence
 from contextlib import nullcontext
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 import click
 import numpy as np
 import torch
 from torch import Tensor
 
-from benchmarks.codings import stored
-from benchmarks.machine import commit, machine, versions
+from benchmarks.measuring.machine import commit, machine, versions
+from benchmarks.measuring.result_file import Record, result_so_far, write_result
 from benchmarks.paper.pruning_figure import draw, tables
 from benchmarks.paper.pruning_published import RATES, SIZED, SIZES
-from nispcodec.core.atomic_write import write_atomic
+from benchmarks.studies.codings import stored
 from nispcodec.core.network import Network
 from nispcodec.core.progress import silent
 from nispcodec.core.sample_set import SampleSet
@@ -47,13 +45,11 @@ from nispcodec.train.prune import STRATEGIES, Mask
 from nispcodec.train.task import Task
 from nispcodec.train.tasks import paper_tasks
 
-RESULTS, FIGURE = "benchmarks/results/pruning.json", "docs/pruning.png"
+RESULTS, FIGURE = Path("benchmarks/results/pruning.json"), Path("docs/pruning.png")
 ASSETS = ("spot", "chess_king")
 SEED = 0
 STEPS, BATCH = 1500, 512
 SAMPLES, TEST = 200_000, 10_000
-
-Record = dict[str, Any]
 
 
 class AbsoluteUv(UvObjective):
@@ -145,8 +141,7 @@ def run(assets: Path, steps: int, output: Path, figure: Path) -> None:
 
 
 def _read(path: Path) -> Record:
-    record: Record = json.loads(path.read_text()) if path.exists() else {"series": []}
-    return record
+    return {"series": [], **result_so_far(path)}
 
 
 def _write(path: Path, found: list[Record]) -> None:
@@ -161,8 +156,7 @@ def _write(path: Path, found: list[Record]) -> None:
         "published": "2000 epochs of 10^6 samples, batches of 2048: 976,562 steps",
     }
     record = {"machine": machine(), "versions": versions(), "how": how, "series": found}
-    path.parent.mkdir(parents=True, exist_ok=True)
-    write_atomic(path, json.dumps(record, indent=1).encode() + b"\n")
+    write_result(path, record)
 
 
 @click.command()

@@ -4,15 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from pathlib import Path
-from typing import Any
 
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
+from benchmarks.measuring.result_file import Record
 from benchmarks.paper.pruning_published import PUBLISHED, RATES, SIZED, SIZES
 
-Record = dict[str, Any]
 Curve = list[tuple[float, float]]
 """(rate, accuracy or error), rising rates."""
 

@@ -6,8 +6,9 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
+from benchmarks.measuring.result_file import Record
 from benchmarks.paper.row import Comparison
-from benchmarks.store import Record, Store
+from benchmarks.rate_distortion.store import Store
 from nispcodec.format import unpack
 
 PRESET = {"preset": "balanced"}

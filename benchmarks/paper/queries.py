@@ -6,8 +6,8 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from benchmarks.decoder import best_seconds, chart_and_uv, random_network
 from benchmarks.paper.row import Comparison
+from benchmarks.studies.decoder import best_seconds, chart_and_uv, random_network
 from nispcodec.infer.evaluate import evaluate
 from nispcodec.train.tasks import paper_chart, paper_sdf, paper_uv
 

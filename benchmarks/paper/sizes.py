@@ -6,8 +6,8 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from benchmarks.codings import COMPONENT, PAPER, PRUNED, UV, measured, pruned, stored
 from benchmarks.paper.row import Comparison
+from benchmarks.studies.codings import COMPONENT, PAPER, PRUNED, UV, measured, pruned, stored
 from nispcodec.core.network import NetworkSpec
 
 TABLE = "Sizes (table 2)"

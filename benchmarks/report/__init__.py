@@ -1,1 +1,1 @@
-"""One HTML file with everything a run found."""
+"""What was found, to look at: an HTML page, plots, the tables of docs/benchmarks.md."""

@@ -6,13 +6,14 @@ import base64
 from collections.abc import Sequence
 from html import escape
 
-from benchmarks.bjontegaard import front
 from benchmarks.codecs import CODECS
-from benchmarks.plots import COLORS, LEAST_ERROR
+from benchmarks.measuring.result_file import Record
+from benchmarks.rate_distortion.bjontegaard import front
+from benchmarks.rate_distortion.rows import ERRORS, Row, curve, pairs, row
+from benchmarks.rate_distortion.store import Store
 from benchmarks.report.chart import Dot, Line, chart
+from benchmarks.report.plots import COLORS, LEAST_ERROR
 from benchmarks.report.tables import against, costs, points, table, textures
-from benchmarks.rows import ERRORS, Row, curve, pairs, row
-from benchmarks.store import Record, Store
 
 STYLE = """
 body { font: 14px/1.45 system-ui, sans-serif; margin: 2em auto; max-width: 1200px;

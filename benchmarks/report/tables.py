@@ -7,8 +7,8 @@ from html import escape
 from typing import Any
 
 from benchmarks.codecs import CODECS
-from benchmarks.rows import Row
-from benchmarks.store import Record
+from benchmarks.measuring.result_file import Record
+from benchmarks.rate_distortion.rows import Row
 
 COLUMNS = {
     "bytes": ",.0f",

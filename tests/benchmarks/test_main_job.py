@@ -7,11 +7,11 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner
 
-from benchmarks import main_job
-from benchmarks.machine import commit, machine, versions
-from benchmarks.main_job import main, table, targets
-from benchmarks.measure import run
-from benchmarks.target import Target
+from benchmarks.headline import main_job
+from benchmarks.headline.main_job import main, table, targets
+from benchmarks.measuring.machine import commit, machine, versions
+from benchmarks.measuring.process import run
+from benchmarks.measuring.target import Target
 
 RECORD = {
     "encode": {"seconds": 100.0, "peak_bytes": 10**9},

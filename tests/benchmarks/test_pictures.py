@@ -3,9 +3,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from benchmarks.paper_pictures import SIZE, _of_size, sight, without_charts
-from benchmarks.pictures import likeness, silhouette, targets
-from benchmarks.target import Target
+from benchmarks.headline.pictures import likeness, silhouette, targets
+from benchmarks.measuring.target import Target
+from benchmarks.paper.pictures import SIZE, _of_size, sight, without_charts
 from nispcodec.core.network import NetworkSpec
 from nispcodec.model import NispModel
 from nispcodec.render.camera import Camera
@@ -29,8 +29,8 @@ def test_only_spot_is_timed_and_three_assets_must_look_alike() -> None:
 
 
 def test_equal_scenes_are_alike(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("benchmarks.pictures.SIZE", 48)
-    monkeypatch.setattr("benchmarks.pictures.VIEWS", 1)
+    monkeypatch.setattr("benchmarks.headline.pictures.SIZE", 48)
+    monkeypatch.setattr("benchmarks.headline.pictures.VIEWS", 1)
     ball, small = scene_of(sphere()), scene_of(sphere(0.5), scene_of(sphere()).frame)
     assert likeness(ball, ball)["mse"] == 0
     assert not any(silhouette(ball, ball, ball).values())

@@ -9,7 +9,7 @@ import pytest
 
 from benchmarks.paper.pruning_figure import draw, holding, tables
 from benchmarks.paper.pruning_published import PUBLISHED, RATES, SIZED, SIZES
-from benchmarks.pruning_or_quantizing import against_quantized, table
+from benchmarks.studies.pruning_or_quantizing import against_quantized, table
 
 
 def series() -> dict[str, object]:

@@ -11,8 +11,8 @@ pytest.importorskip("matplotlib", reason="plots: extra `bench`")
 from benchmarks.paper.command import markdown
 from benchmarks.paper.quality import quality
 from benchmarks.paper.row import Comparison
-from benchmarks.results import current, write_results
-from benchmarks.store import Store
+from benchmarks.rate_distortion.results import current, write_results
+from benchmarks.rate_distortion.store import Store
 from tests.benchmarks.test_summary import record
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from benchmarks.rounding_loss import floats
+from benchmarks.studies.rounding_loss import floats
 from nispcodec.core.network import Network, NetworkSpec
 from nispcodec.core.progress import silent
 from nispcodec.encode import fitting

@@ -8,13 +8,13 @@ from pathlib import Path
 
 import pytest
 
-from benchmarks import runner
+from benchmarks.assets.source import Source
 from benchmarks.codecs import Unavailable
-from benchmarks.hull import lower_hull
-from benchmarks.isolated import WorkFailed, isolated
-from benchmarks.runner import Clock, Job, plan, run
-from benchmarks.source import Source
-from benchmarks.store import Store
+from benchmarks.measuring.isolated import WorkFailed, isolated
+from benchmarks.rate_distortion import runner
+from benchmarks.rate_distortion.hull import lower_hull
+from benchmarks.rate_distortion.runner import Clock, Job, plan, run
+from benchmarks.rate_distortion.store import Store
 
 
 def test_work_in_its_own_process_tells_time_and_memory() -> None:

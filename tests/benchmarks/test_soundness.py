@@ -7,8 +7,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from benchmarks.decoder import naive
-from benchmarks.soundness import soundness
+from benchmarks.studies.decoder import naive
+from benchmarks.studies.soundness import soundness
 from nispcodec.core.arrays import IntArray
 from nispcodec.core.asset import TexturedMesh
 from nispcodec.core.document import Document

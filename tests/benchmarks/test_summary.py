@@ -3,9 +3,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from benchmarks.bjontegaard import delta_rate, front
-from benchmarks.rows import NAMES, as_csv, from_csv, row
-from benchmarks.summary import bytes_at, duels, summarized
+from benchmarks.rate_distortion.bjontegaard import delta_rate, front
+from benchmarks.rate_distortion.rows import NAMES, as_csv, from_csv, row
+from benchmarks.rate_distortion.summary import bytes_at, duels, summarized
 
 ERRORS = np.geomspace(1e-2, 1e-4, 8)
 

@@ -1,0 +1,1 @@
+"""The commands that decide whether a change is one for the better."""

@@ -1,0 +1,1 @@
+"""Every codec at every setting on every asset: `python -m benchmarks`."""

@@ -1,0 +1,92 @@
+"""Every committed result: its files, the command that writes them, and what its numbers follow."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+# Folders have been renamed: commits before that touch the former names.
+FORMER = (
+    "nispcodec/mesh", "nispcodec/fit", "nispcodec/decode", "benchmarks/simplify.py",
+    "benchmarks/corners.py",
+)  # fmt: skip
+MESH, FIT, DECODED, SIMPLIFY, CORNERS = FORMER
+
+CORE = ("nispcodec/core", ":(glob)nispcodec/*.py")
+FORMAT = ("nispcodec/format",)
+TRAIN = ("nispcodec/geometry", "nispcodec/dataset", "nispcodec/train", MESH, FIT)
+ENCODE = (*CORE, *FORMAT, *TRAIN, "nispcodec/encode", "nispcodec/io")
+INFER = ("nispcodec/infer", DECODED)
+DECODE = (*INFER, "nispcodec/extract")
+METRICS = ("nispcodec/metrics",)
+RENDER = ("nispcodec/render",)
+RIVALS = (
+    "benchmarks/codecs", "benchmarks/assets/simplify.py", "benchmarks/assets/corners.py",
+    SIMPLIFY, CORNERS,
+)  # fmt: skip
+
+UNMEASURED = ("nispcodec/bake", "nispcodec/edit", "nispcodec/procedural")
+"""What no committed number follows."""
+
+
+@dataclass(frozen=True)
+class CommittedResult:
+    """One result in benchmarks/results.
+
+    depends: paths of the repository whose commits make it older; made_from: the results it is
+    worked out from, which are as old as they are; asks: the module whose `asked` has the targets,
+    the command's unless told.
+    """
+
+    file: str
+    command: str
+    depends: tuple[str, ...] = ()
+    made_from: tuple[str, ...] = ()
+    beside: tuple[str, ...] = ()
+    asks: str = ""
+
+    @property
+    def module(self) -> str:
+        """Where the targets are, if there are any."""
+        return self.asks or self.command
+
+
+ROUND_TRIP = (*ENCODE, *DECODE, *METRICS)
+"""An asset encoded, decoded and compared."""
+
+RESULTS = (
+    CommittedResult("main_job.json", "benchmarks.headline.main_job", (*ROUND_TRIP, *RENDER)),
+    CommittedResult("encode_time.json", "benchmarks.headline.encode_time", ROUND_TRIP),
+    CommittedResult(
+        "duel.json", "benchmarks.headline.duel", made_from=("main_job.json", "bench.json")
+    ),
+    CommittedResult("pictures.json", "benchmarks.headline.pictures", (*ROUND_TRIP, *RENDER)),
+    CommittedResult(
+        "bench.json",
+        "benchmarks",
+        (*ROUND_TRIP, *RENDER, *RIVALS),
+        beside=("bench.csv",),
+        asks="benchmarks.rate_distortion.command",
+    ),
+    CommittedResult("peers.json", "benchmarks.rate_distortion.peers", (*METRICS, *RIVALS)),
+    CommittedResult(
+        "paper.json",
+        "benchmarks.paper",
+        (*ROUND_TRIP, *RENDER),
+        beside=("paper.md",),
+        asks="benchmarks.paper.command",
+    ),
+    CommittedResult("paper_preset.json", "benchmarks.paper.preset", ENCODE),
+    CommittedResult("paper_pictures.json", "benchmarks.paper.pictures", (*ROUND_TRIP, *RENDER)),
+    CommittedResult("pruning.json", "benchmarks.paper.pruning", (*TRAIN, *FORMAT)),
+    CommittedResult("bits.json", "benchmarks.studies.bits", ENCODE),
+    CommittedResult("codings.json", "benchmarks.studies.codings", FORMAT),
+    CommittedResult("crossover.json", "benchmarks.studies.crossover", (*ROUND_TRIP, *RIVALS)),
+    CommittedResult("decoder.json", "benchmarks.studies.decoder", ROUND_TRIP),
+    CommittedResult("format.json", "benchmarks.studies.format", (*CORE, *FORMAT)),
+    CommittedResult(
+        "pruning_or_quantizing.json",
+        "benchmarks.studies.pruning_or_quantizing",
+        (*TRAIN, *FORMAT),
+    ),
+    CommittedResult("rounding_loss.json", "benchmarks.studies.rounding_loss", ROUND_TRIP),
+)

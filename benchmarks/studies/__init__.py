@@ -1,0 +1,1 @@
+"""One question each, asked beside the headline: what a part costs, and whether it is right."""
