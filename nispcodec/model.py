@@ -58,7 +58,8 @@ class NispModel:
     ) -> Float32Array:
         """Texture coordinates (n, 2) float32, origin bottom-left, in the asset's UV range.
 
-        `charts` (n,) overrides the predicted charts. Points on charts without UV get (0, 0).
+        `charts`, an integer array (n,), overrides the predicted charts. Points on charts without UV
+        get (0, 0). Raises QueryError for a wrong number of charts and for unknown ones.
         """
         normalized = self._normalized(points, frame)
         return self._uv(normalized, self._charts(normalized) if charts is None else charts)
