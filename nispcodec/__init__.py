@@ -71,8 +71,8 @@ def load_mesh(path: str | Path) -> TexturedMesh:
 def write_mesh(mesh: TexturedMesh, path: str | Path) -> list[Path]:
     """Write GLB, OBJ, PLY or STL, by the path's suffix -> the files written, `path` last.
 
-    Files are written whole or not at all. Raises MeshError for an unknown suffix or a mesh without
-    faces, NispError when writing fails.
+    An OBJ has its MTL and its images beside it. Each file is written whole or not at all. Raises
+    MeshError for an unknown suffix or a mesh without faces, NispError when writing fails.
     """
     from nispcodec.io.save import write_mesh as write
 
@@ -87,13 +87,15 @@ def encode(
 ) -> NispModel:
     """Fit networks to a mesh, or to the mesh in a file.
 
-    `progress` is called with each `Progress`. `tuning` holds numbers that are not meant to be
-    chosen by users (`nispcodec.encode.config`).
+    `config` holds what a user chooses, by default `EncodeConfig()`. `progress` is called with each
+    `Progress`. `tuning` holds numbers that are not meant to be chosen by users
+    (`nispcodec.encode.config`).
 
     Each network has a process of its own. Outside of Linux, and with CUDA, these start afresh: a
     script then wants `if __name__ == "__main__":` around its calls. Ctrl-C and errors leave nothing
-    behind. Raises TypeError for what is neither mesh nor path, MeshError when nothing of the mesh
-    can be held by a signed distance, FitError when a network does not converge.
+    behind. Raises TypeError for what is neither mesh nor path, MeshError for a file that cannot be
+    read and when nothing of the mesh can be held by a signed distance, FitError when a network does
+    not converge, NispError for a target that cannot be met.
     """
     from nispcodec.encode import recipe
 
@@ -122,7 +124,8 @@ def compare(
     """Distortion of a decode: distance, UV, color, charts, in the original's normalized frame.
 
     A model is decoded as `NispModel.to_mesh` does, and asked for its charts too; see
-    `nispcodec.metrics.compare`. Raises MeshError when a mesh has no surface.
+    `nispcodec.metrics.compare`. Raises TypeError for what is neither mesh nor path, MeshError for a
+    file that cannot be read and for a mesh without a surface.
     """
     from nispcodec.metrics.compare import compare as compared
     from nispcodec.model import NispModel
@@ -135,8 +138,10 @@ def compare(
 def render(asset: NispModel | TexturedMesh, view: str = "30,20", size: int = 512) -> Float32Array:
     """A picture (size, size, 4) float32 in [0, 1]: sRGB-encoded RGB, straight alpha, top row first.
 
-    A model is sphere-traced, a mesh is hit by rays. `view` is "front", "back", "left", "right",
-    "top", "bottom" or "azimuth,elevation" in degrees. Raises QueryError for another view.
+    A model is sphere-traced, a mesh is hit by rays; it is transparent where nothing is hit. `view`
+    is "front", "back", "left", "right", "top", "bottom" or "azimuth,elevation" in degrees; `size`
+    is in pixels. Raises QueryError for another view, MeshError for a mesh without a surface and for
+    a texture that does not decode.
     """
     from nispcodec.render.camera import view as camera
     from nispcodec.render.views import render_views
@@ -149,7 +154,8 @@ def retexture(
 ) -> NispModel:
     """The model with an image file in a slot of a material; its networks stay as they are.
 
-    Without `material` the image goes to the materials that have a texture there, which must share
+    `slot` is "base_color", "normal", "metallic_roughness", "occlusion" or "emissive". `material` is
+    a name; without it the image goes to the materials that have a texture there, which must share
     it. Raises NispError for a slot or material that is not there, and for an unreadable image.
     """
     from nispcodec.edit.retexture import retextured

@@ -50,7 +50,7 @@ class NispModel:
 
     @property
     def chart_materials(self) -> Int32Array:
-        """The material of each chart (k,) int32, into the document's materials."""
+        """The material of each chart (k,) int32, into `document.materials`."""
         return self.document.charts.materials
 
     def uv(
@@ -58,7 +58,8 @@ class NispModel:
     ) -> Float32Array:
         """Texture coordinates (n, 2) float32, origin bottom-left, in the asset's UV range.
 
-        `charts` (n,) overrides the predicted charts. Points on charts without UV get (0, 0).
+        `charts`, an integer array (n,), overrides the predicted charts. Points on charts without UV
+        get (0, 0). Raises QueryError for a wrong number of charts and for unknown ones.
         """
         normalized = self._normalized(points, frame)
         return self._uv(normalized, self._charts(normalized) if charts is None else charts)
@@ -68,7 +69,8 @@ class NispModel:
 
         The base color texture at the point's UV, filtered and wrapped as its material says, times
         the material's factor; the factor alone where there is no texture or no UV. Openings have no
-        color: points there get that of the likeliest chart of the asset.
+        color: points there get that of the likeliest chart of the asset. Raises MeshError for a
+        texture that does not decode.
         """
         normalized = self._normalized(points, frame)
         charts = self._charts(normalized, len(self.document.charts) - self.document.charts.openings)
@@ -84,7 +86,8 @@ class NispModel:
     def project(self, points: ArrayLike, frame: str = "world") -> Float64Array:
         """The points moved along the gradient onto the surface (n, 3) float64, in `frame`.
 
-        Newton steps on the fitted field: exact near the surface, approximate far from it.
+        `PROJECTION_STEPS` Newton steps on the fitted field: exact near the surface, approximate far
+        from it.
         """
         moved = self._normalized(points, frame)
         for _ in range(PROJECTION_STEPS):

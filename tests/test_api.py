@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -71,9 +72,9 @@ def test_an_image_that_is_not_there_is_an_error(model: nispcodec.NispModel) -> N
 
 
 @pytest.mark.parametrize("given", [None, 3, b"model.obj", [1, 2]])
-def test_encoding_something_else_is_a_type_error(given: object) -> None:
+def test_encoding_something_else_is_a_type_error(given: Any) -> None:
     with pytest.raises(TypeError, match="expected a TexturedMesh or the path of a mesh file"):
-        nispcodec.encode(given)  # type: ignore[arg-type]
+        nispcodec.encode(given)
 
 
 def test_encoding_a_path_that_is_not_there_names_it() -> None:

@@ -201,7 +201,8 @@ def test_mesh_of_charts_without_uv() -> None:
 
 
 def test_a_field_without_surface_gives_an_empty_mesh() -> None:
-    everywhere_outside = tiny.relu_network([(np.eye(3), np.zeros(3)), (np.zeros((1, 3)), [1.0])])
+    layers = [(np.eye(3), np.zeros(3)), (np.zeros((1, 3)), np.ones(1))]
+    everywhere_outside = tiny.relu_network(layers)
     for options in ({}, {"faces": 100}, {"error": 1e-3}):
         mesh = NispModel(tiny.document(everywhere_outside)).to_mesh(16, **options)
         assert mesh.faces.shape == (0, 3)

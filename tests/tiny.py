@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from io import BytesIO
+from typing import Any
 
 import numpy as np
 
@@ -12,10 +14,10 @@ from nispcodec.core.document import ChartTable, Document, Frame
 from nispcodec.core.network import Network, NetworkSpec
 
 
-def relu_network(layers: list[tuple[FloatArray, FloatArray]], **options: object) -> Network:
+def relu_network(layers: Sequence[tuple[FloatArray, FloatArray]], **options: Any) -> Network:
     """A ReLU network with the given (weight, bias) pairs."""
     hidden = tuple(len(bias) for _, bias in layers[:-1])
-    spec = NetworkSpec(hidden, len(layers[-1][1]), activation="relu", **options)  # type: ignore[arg-type]
+    spec = NetworkSpec(hidden, len(layers[-1][1]), activation="relu", **options)
     tensors = {}
     for index, (weight, bias) in enumerate(layers):
         tensors[f"weight.{index}"] = np.asarray(weight, np.float32)

@@ -1,4 +1,4 @@
-"""What a material's other maps show at points of the model, factors and strengths multiplied in.
+"""Texels of a material's other maps at points of the model, factors and strengths multiplied in.
 
 So points of several materials can share one texture, as a new atlas wants it.
 """
@@ -29,7 +29,8 @@ def baked_maps(
 ) -> dict[str, Float32Array]:
     """Texels (n, 3) in [0, 1], as stored in images, of every further slot at world points (n, 3).
 
-    Normals are turned from the directions of the old UVs into those of `frames`.
+    Normals are turned from the directions of the old UVs into those of `frames`. Raises MeshError
+    for a texture that does not decode.
     """
     charts = model.charts(points)
     uvs = model.uv(points, charts=charts)

@@ -23,8 +23,8 @@ def rebaked(model: NispModel, mesh: TexturedMesh, size: int = 1024) -> TexturedM
 
     `mesh`, in the world frame, has an atlas of its own: every face with UVs in [0, 1], none over
     another. Texels outside the atlas take the color of the nearest texel inside, so that no
-    filter and no mip level bleeds. Raises MeshError when faces have no UVs or the size is not
-    16 to 8192.
+    filter and no mip level bleeds. Raises MeshError when faces have no UVs, the size is not 16 to
+    8192, or a texture does not decode.
     """
     if not SIZES[0] <= size <= SIZES[1]:
         raise MeshError(f"size: expected {SIZES[0]} to {SIZES[1]} texels, found {size}")

@@ -23,7 +23,7 @@ class TangentFrames:
 
 
 def frames_at(mesh: TexturedMesh, faces: Int32Array, weights: Float64Array) -> TangentFrames:
-    """The frames at barycentric `weights` (n, 3) in `faces` (n,), all of which have UVs.
+    """The tangent frames at barycentric `weights` (n, 3) in `faces` (n,), all of which have UVs.
 
     Directions of u are averaged over the faces that share a UV and made square to the averaged
     normals, much as MikkTSpace does.

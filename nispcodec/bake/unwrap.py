@@ -13,7 +13,7 @@ from nispcodec.core.errors import MeshError
 def unwrap(mesh: TexturedMesh) -> TexturedMesh:
     """New UVs in [0, 1] without overlaps, by xatlas; faces, positions and materials stay.
 
-    Whatever UVs there were are replaced, so maps no longer fit and are dropped with a warning.
+    UVs that the mesh has are replaced: its maps no longer fit and are dropped with a warning.
     Raises MeshError when the extra `unwrap` is not installed.
     """
     try:

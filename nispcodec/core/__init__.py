@@ -1,1 +1,1 @@
-"""What every part of the package speaks: assets, networks, documents, errors."""
+"""The types that every part of the package shares: assets, networks, documents, errors."""

@@ -37,8 +37,8 @@ class Texture:
 class TextureMap:
     """How a material uses a texture in one slot.
 
-    `texture` indexes the asset's textures; `wrap` is for u and v; `strength` is glTF's normal scale
-    or occlusion strength.
+    `texture` indexes the asset's textures; `wrap` is for u and v, each one of `WRAPS`; `filter` is
+    one of `FILTERS`; `strength` is glTF's normal scale or occlusion strength.
     """
 
     texture: int
@@ -49,7 +49,11 @@ class TextureMap:
 
 @dataclass(frozen=True)
 class Material:
-    """Metallic-roughness material as in glTF 2.0, factors linear; `maps` goes from slot to map."""
+    """Metallic-roughness material as in glTF 2.0, its factors linear and in [0, 1].
+
+    `base_color` is RGBA; `alpha_mode` is one of `ALPHA_MODES`, and `alpha_cutoff` the least alpha
+    that "mask" shows; `maps` goes from slot (`nispcodec.core.slots`) to map.
+    """
 
     name: str = "material"
     base_color: tuple[float, float, float, float] = (1.0, 1.0, 1.0, 1.0)
@@ -64,7 +68,7 @@ class Material:
 
 @dataclass(frozen=True)
 class TexturedMesh:
-    """One asset: triangles with a UV coordinate and a material each corner and face.
+    """One asset: triangles with a UV coordinate for each corner and a material for each face.
 
     positions      (n, 3) float64, world frame
     faces          (m, 3) int32, into positions
@@ -72,6 +76,9 @@ class TexturedMesh:
     uv_faces       (m, 3) int32, into uvs; a face without UV has -1 in all three corners
     face_materials (m,)   int32, into materials
     warnings       what the reader had to leave out or guess, one sentence each
+
+    Raises MeshError for an array of another shape or type, a number that is not finite, or an index
+    out of range.
     """
 
     positions: Float64Array
@@ -96,14 +103,20 @@ class TexturedMesh:
         _expect_range("face_materials", self.face_materials, 0, len(self.materials))
 
     def save(self, path: str | Path) -> list[Path]:
-        """Write the mesh in the format of the path's suffix; see `nispcodec.write_mesh`."""
+        """Write the mesh in the format of the path's suffix -> the files written.
+
+        Raises MeshError and NispError as `nispcodec.write_mesh` does.
+        """
         from nispcodec.io.save import write_mesh
 
         return write_mesh(self, path)
 
     @staticmethod
     def geometry_only(positions: Float64Array, faces: IntArray, name: str) -> TexturedMesh:
-        """A mesh of positions (n, 3) and faces (m, 3) without UVs, of one material."""
+        """A mesh of positions (n, 3) and faces (m, 3) without UVs, of one material.
+
+        Raises MeshError as the class does.
+        """
         return TexturedMesh(
             positions=positions,
             faces=faces.astype(np.int32),

@@ -10,9 +10,10 @@ from nispcodec.core.errors import NispError
 
 
 def write_atomic(path: Path, data: bytes) -> None:
-    """Write to a sibling temporary file, flush it to disk, rename it over `path`.
+    """Write to a temporary file beside `path`, flush it to disk, rename it over `path`.
 
-    Raises NispError, and leaves what was there, when the folder cannot be written.
+    Permissions are those of a new file. Raises NispError, and leaves what was there, when the
+    folder cannot be written.
     """
     try:
         handle, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")

@@ -15,26 +15,29 @@ from nispcodec.core.network import MAX_CHARTS, Network
 
 @dataclass(frozen=True)
 class Frame:
-    """From the normalized frame to the world: world = normalized * radius + center."""
+    """From the normalized frame to the world: world = normalized * radius + center.
+
+    `center` and `radius` are in world units.
+    """
 
     center: tuple[float, float, float]
     radius: float
 
     def to_world(self, points: FloatArray) -> Float64Array:
-        """(n, 3) normalized -> (n, 3) world."""
+        """Points (n, 3) of the normalized frame -> (n, 3) float64 in the world frame."""
         return np.asarray(points, dtype=np.float64) * self.radius + np.asarray(self.center)
 
     def to_normalized(self, points: FloatArray) -> Float64Array:
-        """(n, 3) world -> (n, 3) normalized."""
+        """Points (n, 3) of the world frame -> (n, 3) float64 in the normalized frame."""
         return (np.asarray(points, dtype=np.float64) - np.asarray(self.center)) / self.radius
 
 
 @dataclass(frozen=True)
 class ChartTable:
-    """What each of the k charts is, and the affine map from the UV network to the asset's UV.
+    """The material of each of the k charts, and the affine map from network UV to the asset's UV.
 
     materials (k,) int32 into the document's materials; has_uv (k,) bool;
-    asset UV = network UV * uv_scale + uv_offset, per axis. A chart without UV answers (0, 0).
+    asset UV = network UV * uv_scale + uv_offset, for each axis. A chart without UV answers (0, 0).
     With `openings` the last chart is no part of the asset: it is where the SDF closes openings.
     """
 
@@ -50,14 +53,15 @@ class ChartTable:
 
 @dataclass(frozen=True)
 class Document:
-    """One decoded container.
+    """The content of one file.
 
-    sdf is always there; chart only when there are two charts or more; uv only when some chart has
-    UV. `half_thickness` (normalized frame) is given to open surfaces, 0 when there are none;
+    `sdf` is always there; `chart` only when there are two charts or more; `uv` only when some chart
+    has UV. `half_thickness` (normalized frame) is given to open surfaces, 0 when there are none;
     with it the surface has parts as thin as twice this.
     `info` holds what was measured and how the file was made: plain str, int, float and bool values.
     `extra` holds the ancillary sections that this version does not know, by four-character code:
     they are kept when the document is written again.
+    Raises FormatError when the parts do not fit together, such as a chart of an unknown material.
     """
 
     frame: Frame

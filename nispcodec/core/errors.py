@@ -4,7 +4,7 @@ from __future__ import annotations
 
 
 class NispError(Exception):
-    """Base of all errors that a user can cause and mend."""
+    """Base of all errors that a user can cause and fix."""
 
 
 class MeshError(NispError):
@@ -16,11 +16,11 @@ class MeshError(NispError):
 
 
 class FitError(NispError):
-    """The networks could not be fitted to the asset."""
+    """The networks could not be fitted to the asset, or not to the size or error asked for."""
 
 
 class QueryError(NispError):
-    """A query to a model was malformed (shape, dtype, non-finite points)."""
+    """A query makes no sense: shape, dtype or frame of points, a chart, a view, a channel."""
 
 
 class FormatError(NispError):

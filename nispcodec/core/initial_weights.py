@@ -1,7 +1,7 @@
-"""The numbers that training starts from: the same for who writes a file and for who reads it.
+"""The numbers that training starts from: the same for the encoder and the decoder.
 
-Trained weights are near where they began, those of the first layer and of UVs above all: what a
-file has to say of them is how far they went.
+Trained weights are near where they began, those of the first layer and of UVs above all: a file
+needs to say only how far they went.
 """
 
 from __future__ import annotations
@@ -19,7 +19,8 @@ _GAMMA = np.uint64(0x9E3779B97F4A7C15)
 def initial_integers(seed: int, first: int, count: int) -> Int64Array:
     """(count,) int64 initial weights of a network with this seed, from its weight `first` on.
 
-    SplitMix64 (Steele, Lea, Flood, "Fast splittable pseudorandom number generators", 2014).
+    Integers from -2^BITS to below 2^BITS. SplitMix64 (Steele, Lea, Flood, "Fast splittable
+    pseudorandom number generators", 2014).
     """
     start = _mixed(np.array([seed], np.uint64))
     places = np.arange(first + 1, first + count + 1, dtype=np.uint64)

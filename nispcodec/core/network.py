@@ -1,6 +1,6 @@
-"""What a network is: its topology and its weights, as plain numpy arrays.
+"""Networks as data: their topology and their weights, as plain numpy arrays.
 
-The one description that the fit, the format and the decoder share; evaluation is in
+The one description that training, the format and the decoder share; evaluation is in
 `nispcodec.infer.evaluate` (numpy) and `nispcodec.train.backend.torch.module` (torch).
 """
 
@@ -49,6 +49,8 @@ class NetworkSpec:
                  network holds one half and its answers are symmetric about the plane; bit 3, 4, 5:
                  x, y, z itself follows as a further coordinate, for what differs on the two sides
     init_seed    seed of the initial weights (`nispcodec.core.initial_weights`)
+
+    Raises FormatError for a member that is unknown or out of range.
     """
 
     hidden: tuple[int, ...]
@@ -88,12 +90,12 @@ class NetworkSpec:
 
     @property
     def mirrored(self) -> tuple[bool, bool, bool]:
-        """Of which of x, y, z the absolute value enters."""
+        """Whether the absolute value enters in place of the coordinate, for each of x, y, z."""
         return bool(self.mirror & 1), bool(self.mirror & 2), bool(self.mirror & 4)
 
     @property
     def signed_axes(self) -> tuple[int, ...]:
-        """The axes of which the coordinate itself follows its absolute value."""
+        """The axes, 0 to 2, whose coordinate itself follows its absolute value."""
         return tuple(axis for axis in range(3) if self.mirror >> 3 + axis & 1)
 
     @property
@@ -124,7 +126,10 @@ class NetworkSpec:
         return shapes
 
     def initial_integers(self, names: Iterable[str]) -> dict[str, Int64Array]:
-        """The initial weights of each of these tensors, as integers, in its shape."""
+        """The initial weights of the tensors `names`, int64 as in `core.initial_weights`, by name.
+
+        Each has the shape of its tensor in `shapes`.
+        """
         shapes, first = self.shapes, 0
         places: dict[str, int] = {}
         for name, shape in shapes.items():
@@ -148,6 +153,7 @@ class Network:
 
     `steps` names the tensors that are quantized, with their quantization step: such a tensor is
     float32(symbol) * float32(step) for integer symbols.
+    Raises FormatError for tensors that do not fit the spec or are not finite.
     """
 
     spec: NetworkSpec

@@ -1,4 +1,4 @@
-"""What a long encode tells whoever waits for it."""
+"""Progress of a long encode, told to whoever waits for it."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ class Progress:
     network       "sdf", "chart" or "uv"; "" for a stage of the whole encode
     stage         what is being done, in a word or two
     step, steps   how far it is
-    loss          training loss, smoothed
+    loss          training loss, smoothed; NaN, as the next two, where nothing is known
     error         held-out error: sdf mean distance (normalized), chart share of wrong labels,
                   uv mean distance in the network's [0, 1]^2 given the true chart
     seconds_left  estimate for this network
@@ -34,4 +34,4 @@ Listener = Callable[[Progress], None]
 
 
 def silent(_: Progress) -> None:
-    """Listens to nothing."""
+    """A listener that ignores all progress."""

@@ -1,4 +1,4 @@
-"""Which texels of an image the faces of an atlas cover, and what the others take from them."""
+"""Rasterization of an atlas: which texels its faces cover, and colors for the others."""
 
 from __future__ import annotations
 
@@ -25,7 +25,8 @@ class Texels:
 def texels(corner_uvs: Float64Array, height: int, width: int) -> Texels:
     """Every texel of an image whose center a face covers; the last face where several do.
 
-    corner_uvs (m, 3, 2), v upwards, within [0, 1].
+    corner_uvs (m, 3, 2): UVs of every face's corners, origin bottom-left, within [0, 1]. The image
+    has its top row first.
     """
     owners = np.full((height, width), -1, np.int32)
     weights = np.zeros((height, width, 3))
@@ -37,7 +38,7 @@ def texels(corner_uvs: Float64Array, height: int, width: int) -> Texels:
 
 
 def coverage(corner_uvs: Float64Array, height: int, width: int) -> BoolArray:
-    """(height, width): which texels' centers a face covers; corner_uvs as `texels` has them."""
+    """(height, width) bool: which texels' centers a face covers; corner_uvs as in `texels`."""
     covered = np.zeros((height, width), np.bool_)
     for rows, columns, _, _ in _covered(corner_uvs, height, width):
         covered[rows, columns] = True
@@ -45,7 +46,10 @@ def coverage(corner_uvs: Float64Array, height: int, width: int) -> BoolArray:
 
 
 def padded(image: Uint8Array, covered: BoolArray) -> Uint8Array:
-    """The image (h, w, c) with the nearest covered texel's color wherever none is covered."""
+    """The image (h, w, c) with the nearest covered texel's color where `covered` (h, w) is False.
+
+    The image itself where nothing is covered.
+    """
     from scipy.ndimage import distance_transform_edt
 
     if not covered.any():

@@ -24,7 +24,7 @@ class SampleSet:
 
     @staticmethod
     def joined(parts: tuple[SampleSet, ...]) -> SampleSet:
-        """All parts, one after the other."""
+        """All parts, concatenated."""
         return SampleSet(
             np.concatenate([part.points for part in parts]),
             np.concatenate([part.sdf for part in parts]),

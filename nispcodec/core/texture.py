@@ -59,7 +59,8 @@ def decode_image(texture: Texture) -> Float32Array:
 def reencode(textures: Iterable[Texture], kind: str, quality: int) -> tuple[Texture, ...]:
     """The same images as other files: `kind` "webp", "avif" or "jpeg", `quality` 1 to 100.
 
-    JPEG holds no transparency: images that have some stay as they are. Names stay different.
+    JPEG holds no transparency: images that have some stay as they are. Names get the suffix of
+    their kind and stay different. Raises MeshError as `decode_image` does.
     """
     again: list[Texture] = []
     for texture in textures:
@@ -81,12 +82,16 @@ def _reencoded(texture: Texture, kind: str, quality: int) -> Texture:
 
 
 def image_bytes(texture: Texture) -> Uint8Array:
-    """As `decode_image`, in 0 to 255."""
+    """The texture's pixels (h, w, 4) uint8. Raises MeshError as `decode_image` does."""
     return np.rint(decode_image(texture) * 255).astype(np.uint8)
 
 
 def encode_image(pixels: Uint8Array, kind: str, quality: int) -> bytes:
-    """A file of pixels (h, w, 4): `kind` "png", which has no quality, "webp", "avif" or "jpeg"."""
+    """The bytes of an image file of pixels (h, w, 4) RGBA, sRGB-encoded, top row first.
+
+    `kind` is "png", which ignores `quality`, "webp", "avif" or "jpeg"; `quality` is 1 to 100. Alpha
+    is left out where it is 255 everywhere.
+    """
     import PIL.Image
 
     file = io.BytesIO()
@@ -149,9 +154,10 @@ def base_colors(
     has_uv: BoolArray,
     uv: FloatArray,
 ) -> Float32Array:
-    """Base colors (n, 4) at (n, 2) UVs of the materials `owners` (n,), as `base_color`.
+    """Base colors (n, 4) float32 at (n, 2) UVs of the materials `owners` (n,), as `base_color`.
 
-    Where `has_uv` (n,) is False the material shows its factor alone.
+    Where `has_uv` (n,) is False the material shows its factor alone. Raises MeshError for a texture
+    that does not decode.
     """
     colors = np.empty((len(uv), 4), np.float32)
     for number in np.unique(owners).tolist():

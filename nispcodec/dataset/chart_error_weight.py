@@ -1,4 +1,4 @@
-"""How much a wrong chart is seen: the charts beside a sample have another color than its own."""
+"""How visible a wrong chart is: how far colors of other charts beside a sample are from its own."""
 
 from __future__ import annotations
 
@@ -15,9 +15,11 @@ from nispcodec.core.texture import base_colors
 def chart_error_weight(
     mesh: TexturedMesh, table: ChartTable, samples: SampleSet, neighbors: int
 ) -> Float64Array:
-    """(n,) how far the colors of neighbors on other charts are off, 0 for those on its own.
+    """Weights (n,) of samples: how far the colors of neighbors on other charts are off.
 
-    The mean over so many neighbors of root mean square differences of color and alpha.
+    The mean, over the `neighbors` nearest samples and the sample itself among them, of the root
+    mean square difference of color and alpha; neighbors on the sample's own chart count as 0.
+    Raises MeshError for a texture that does not decode.
     """
     uvs = samples.uv * np.asarray(table.uv_scale) + np.asarray(table.uv_offset)
     owners, has_uv = table.materials[samples.chart], table.has_uv[samples.chart]

@@ -19,13 +19,14 @@ def error_radii(
     limit: float,
     floaters: bool = False,
 ) -> Float32Array:
-    """(n,) how far the surface is off for each mistake: 0 where `field` has the sign of `sdf`.
+    """Error radii (n,) float32 of samples: 0 where `field` has the sign of `sdf`.
 
-    points (n, 3), sdf (n,), field (n,), normalized frame: the distance from a sample on the wrong
-    side to the nearest one that the field puts on the side where the former belongs, sought no
-    further away than `limit`. With `floaters`, mistakes further than that from the asset count as
-    far as they are from it: so far off is a body or hollow that is none. Early in a fit there are
-    so many of these that all else is neglected.
+    points (n, 3), their distances sdf (n,) and those that a network gives, field (n,), normalized
+    frame. For a sample on the wrong side it is the distance to the nearest sample that the field
+    puts on the side where the former belongs, sought no further away than `limit`. With `floaters`,
+    samples on the wrong side that are further than `limit` from the asset have |sdf|: so far off is
+    a body or hollow that the asset has not. Early in a fit there are so many of these that all else
+    would be neglected.
     """
     found = np.zeros(len(points), dtype=np.float32)
     for inside in (False, True):

@@ -12,10 +12,10 @@ from nispcodec.dataset.sampler import Sampler
 class TrainingSets:
     """All samples of one asset, normalized frame.
 
-    distance, charts, uvs    that the SDF, chart and UV network learn from
-    held_out_distance        near the surface, that the SDF is judged by
-    held_out_surface         on the surface, that charts and UVs are judged by
-    undersampled_charts      more for UVs, of patches that are too small to have many
+    distance, charts, uvs    what the SDF, chart and UV network learn from
+    held_out_distance        near the surface: what the SDF is judged by
+    held_out_surface         on the surface: what charts and UVs are judged by
+    undersampled_charts      more for UVs, on patches that are too small to have many
     """
 
     distance: SampleSet
@@ -31,10 +31,11 @@ class TrainingSets:
 
 
 def training_sets(sampler: Sampler) -> TrainingSets:
-    """Near the surface for the most part; the whole cube for the sign far away.
+    """The samples of all presets but `paper`.
 
-    UVs learn from some points again where the texture changes, charts where they show different
-    colors.
+    Most are near the surface; those of the whole cube teach the sign far away. UVs learn from some
+    points again where the texture changes, charts where a wrong one shows another color. Raises
+    MeshError for a texture that does not decode.
     """
     c = sampler.config
     distance = (
@@ -68,10 +69,10 @@ def training_sets(sampler: Sampler) -> TrainingSets:
 
 
 def paper_training_sets(sampler: Sampler) -> TrainingSets:
-    """The paper's: importance samples for all networks, judged on the surface (section 4.1).
+    """The samples of the preset `paper`: importance samples for all networks (section 4.1).
 
-    They leave most of space unseen, where a fitted SDF then has as much surface again as the asset:
-    it sees the cube's samples as well.
+    These leave most of space unseen, where a fitted SDF then has as much surface again as the
+    asset: it learns from samples of the whole cube as well.
     """
     c = sampler.config
     samples = sampler.importance(c.paper_count)

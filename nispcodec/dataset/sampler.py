@@ -27,7 +27,11 @@ TINY = np.finfo(np.float64).tiny
 
 
 class Sampler:
-    """Draws and labels points around one analyzed asset; all in the normalized frame."""
+    """Random points around one analyzed asset, labeled; all in the normalized frame.
+
+    The same seed and the same calls in the same order give the same samples. Counts are of samples,
+    spreads are the mean |SDF| on a plane; without `signed` all of space counts as outside.
+    """
 
     def __init__(
         self, analysis: Analysis, seed: int = 0, config: SamplingConfig = SamplingConfig()
@@ -37,15 +41,16 @@ class Sampler:
         self._random, self._label = np.random.default_rng([seed, 1]), analysis.label
 
     def near_surface(self, count: int, spread: float, signed: bool = True) -> SampleSet:
-        """About `count` samples whose |SDF| has the mean `spread`: `laplace_offsets`.
+        """Up to `count` samples beside the surface, as `laplace_offsets` has them.
 
-        With spread 1 / beta this is the density of the paper's sampler, at one query a point.
+        With spread 1 / beta this is the density of the paper's sampler, at one distance query for
+        each point.
         """
         surface, _ = solid_surface(self._random, self.analysis.solid, count)
         return self._label(self._beside(surface, spread), signed)
 
     def undersampled_charts(self, least: int, count: int, spread: float) -> SampleSet:
-        """Samples for patches that have fewer than `least` of `count` points: what they lack."""
+        """Samples beside patches that would get fewer than `least` of `count`: what they lack."""
         solid = self.analysis.solid
         sizes, patch = area(solid.pieces), self.analysis.patches.face_charts[solid.parents]
         shares = np.bincount(patch, sizes) / sizes.sum()
@@ -58,9 +63,9 @@ class Sampler:
         return self._label(self._beside(surface, spread), signed=False)
 
     def thin_walls(self, count: int, times: int, spread: float) -> SampleSet:
-        """Samples about those of `count` surface points where a part is thin: `times` for each.
+        """Samples near those of `count` surface points where a part is thin: `times` for each.
 
-        No more than `count` in all. A network that misses a strap is hardly wrong in the mean.
+        Up to `count` in all. A network that misses a strap is hardly wrong in the mean.
         """
         depth, solid = self.config.thin_depth, self.analysis.solid
         surface, piece = solid_surface(self._random, solid, count)
@@ -71,12 +76,12 @@ class Sampler:
         return self._label(self._beside(again, spread))
 
     def cube(self, count: int) -> SampleSet:
-        """`count` samples uniform in the cube that anybody asks about."""
+        """`count` samples uniform in the cube of `GeometryConfig.cube`."""
         half = self.analysis.config.cube
         return self._label(self._random.uniform(-half, half, size=(count, 3)))
 
     def importance(self, count: int) -> SampleSet:
-        """The paper's sampler: uniform in the unit ball, kept with weight exp(-beta |SDF|)."""
+        """`count` samples of the unit ball by the weight exp(-beta |SDF|) (paper, eq. 5)."""
         candidates = uniform_ball(self._random, 10 * count)
         # The weight needs no sign, which would take most of the time.
         distance = np.abs(self.analysis.field.closest(candidates, signed=False).sdf)
@@ -90,9 +95,9 @@ class Sampler:
         return self._label(points, signed=False)
 
     def asymmetric(self, count: int, spread: float) -> list[SampleSet]:
-        """Of `count` mirror images of points near the surface those unlike the points themselves.
+        """A set for each signed axis of the SDF: where the asset is not like its mirror image.
 
-        A set for each signed axis of the SDF.
+        These are some of the mirror images of `count` points near the surface.
         """
         signed_axes = self.analysis.symmetry.sdf >> 3
         if not signed_axes:
@@ -102,7 +107,7 @@ class Sampler:
         return asymmetric_samples(self._label, near, signed_axes, alike)
 
     def closing_surface(self, count: int) -> SampleSet:
-        """Samples where the SDF closes openings, on the openings' chart; 0 without openings."""
+        """Up to `count` samples where the SDF closes openings, on their chart; none without."""
         analysis = self.analysis
         if not analysis.table.openings:
             return self._label(np.zeros((0, 3)))
@@ -118,13 +123,19 @@ class Sampler:
         )
 
     def by_texture_gradient(self, samples: SampleSet, count: int) -> SampleSet:
-        """`count` samples again, the more the texture changes there; 0 where it never does."""
+        """`count` of the samples, the likelier the more the texture changes there.
+
+        None where it never does. Raises MeshError for a texture that does not decode.
+        """
         mesh, table = self.analysis.mesh, self.analysis.table
         weight = texture_gradient(mesh, table, samples, self.config.texture_step)
         return self._again(samples, weight, count)
 
     def by_chart_error(self, samples: SampleSet, count: int) -> SampleSet:
-        """`count` samples again, the more a wrong chart is seen there; 0 where it never is."""
+        """`count` of the samples, the likelier the more a wrong chart is seen there.
+
+        None where it never is. Raises MeshError for a texture that does not decode.
+        """
         mesh, table = self.analysis.mesh, self.analysis.table
         weight = chart_error_weight(mesh, table, samples, self.config.chart_neighbors)
         return self._again(samples, weight, count)

@@ -1,4 +1,4 @@
-"""How much a texture changes about samples: an error in UV is seen there, and nowhere else."""
+"""How much a texture changes around samples: an error in UV is seen there, and nowhere else."""
 
 from __future__ import annotations
 
@@ -16,7 +16,11 @@ DIRECTIONS = np.array([(1, 0), (0, 1), (-1, 0), (0, -1)])
 def texture_gradient(
     mesh: TexturedMesh, table: ChartTable, samples: SampleSet, step: float
 ) -> Float64Array:
-    """(n,) root mean square change of color and alpha `step` away in UV; 0 without a texture."""
+    """Texture gradients (n,) of samples: root mean square change of base color and alpha.
+
+    The change is over `step` of the asset's UV to four sides; it is 0 without a texture. Raises
+    MeshError for a texture that does not decode.
+    """
     uvs = samples.uv * np.asarray(table.uv_scale) + np.asarray(table.uv_offset)
     owners = np.where(table.has_uv, table.materials, -1)[samples.chart]
     found = np.zeros(len(samples))

@@ -16,14 +16,15 @@ from nispcodec.core.raster import coverage, padded
 from nispcodec.core.texture import encode_image, image_bytes
 
 ROUNDING = 1e-6
-"""UVs that leave the image by so little do not."""
+"""UVs that leave the image by less than this count as inside."""
 
 
 def with_padded_textures(mesh: TexturedMesh, quality: int) -> tuple[Texture, ...]:
     """The mesh's textures with the nearest used texel's color where no face lies.
 
-    Formats and names stay; `quality`, 1 to 100, is for those that lose something. An image that no
-    face uses, or that one repeats, stays as it is.
+    Formats and names stay; `quality`, 1 to 100, is for lossy formats. An image that no face uses,
+    or that some face uses across its border, stays as it is. Raises MeshError for a texture that
+    does not decode.
     """
     return tuple(_padded(mesh, number, quality) for number in range(len(mesh.textures)))
 

@@ -37,6 +37,8 @@ class EncodeConfig:
     prune           None, "smallest", "smallest_global" or "large_final": lottery tickets
     prune_rate      share of weights to prune, 0 to below 1; or by network: {"sdf": 0.3, "uv": 0.5}
     prune_rounds    in which the rate is reached: each takes as long as an encode
+
+    Raises NispError for a member out of range and for members that exclude each other.
     """
 
     preset: str = "balanced"

@@ -57,7 +57,7 @@ def fit(
 
 
 def asset_problem(analysis: Analysis, sets: TrainingSets, training: TrainConfig) -> AssetProblem:
-    """What the networks of an asset are asked for."""
+    """Everything about an asset that the tasks of its networks depend on."""
     table, symmetry = analysis.table, analysis.symmetry
     return AssetProblem(
         sets,

@@ -1,4 +1,4 @@
-"""What an encode says of its result: held-out errors of the networks as stored."""
+"""The report of an encode: held-out errors of the networks as stored."""
 
 from __future__ import annotations
 

@@ -26,7 +26,7 @@ from nispcodec.infer.evaluate import gradient
 
 @dataclass(frozen=True)
 class ExtractionReport:
-    """What was extracted: cells along the cube's edge, connected components, dropped noise."""
+    """Counts of an extraction: cells along the cube's edge, connected components, dropped noise."""
 
     resolution: int
     kept: int
@@ -35,7 +35,7 @@ class ExtractionReport:
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """What the user of the mesh should know: a sentence when something was dropped."""
+        """Warnings for the user of the mesh: a sentence when something was dropped."""
         if not self.dropped:
             return ()
         return (f"{self.dropped} spurious component(s), {self.dropped_faces} faces, dropped",)

@@ -24,7 +24,10 @@ from nispcodec.format.constants import (
 
 
 def encode(section: str, value: Any) -> bytes:
-    """Value of dict, list, str, bytes, int, float and bool -> msgpack."""
+    """A value of dict, list, str, bytes, int, float and bool -> canonical msgpack.
+
+    Raises FormatError, naming `section`, for a value of another type or beyond the caps.
+    """
     data = _Encoder(section).encode(value, 1)
     if len(data) > MAX_METADATA:
         raise FormatError(section, "length", f"at most {MAX_METADATA} bytes", len(data))
@@ -32,7 +35,10 @@ def encode(section: str, value: Any) -> bytes:
 
 
 def decode(section: str, data: bytes | memoryview) -> Any:
-    """Msgpack -> value; `FormatError` when it is malformed, too large or not canonical."""
+    """Canonical msgpack -> value.
+
+    Raises FormatError, naming `section`, when it is malformed, beyond the caps or not canonical.
+    """
     if len(data) > MAX_METADATA:
         raise FormatError(section, "length", f"at most {MAX_METADATA} bytes", len(data))
     try:

@@ -52,7 +52,8 @@ class Entry:
 def write_container(sections: Iterable[tuple[str, bool, bytes]]) -> bytes:
     """(code, critical, content) of every section, in any order -> the bytes of the file.
 
-    `FormatError` for a code that is not four of A-Z and 0-9, and beyond the caps.
+    Raises FormatError for a code that is not four of A-Z and 0-9, two equal codes, and beyond the
+    caps.
     """
     rows = sorted(sections)
     if len(rows) > MAX_SECTIONS:
@@ -76,9 +77,10 @@ def write_container(sections: Iterable[tuple[str, bool, bytes]]) -> bytes:
 
 
 def read_container(data: bytes) -> list[Entry]:
-    """Checks everything up to the checksums of the payloads; copies and unpacks nothing.
+    """The section table of a file's bytes, in file order; copies and unpacks nothing.
 
-    Raises `FormatError` naming the section ("header" for the part before the payloads).
+    Everything up to the checksums of the payloads is checked. Raises FormatError naming the section
+    ("header" for the part before the payloads).
     """
     count = _read_header(data)
     end = HEADER_SIZE + ENTRY_SIZE * count
@@ -96,7 +98,10 @@ def read_container(data: bytes) -> list[Entry]:
 
 
 def content(entry: Entry) -> memoryview:
-    """The unpacked payload of one section; allocates its decoded length if packed, else nothing."""
+    """The unpacked payload of one section; allocates its decoded length if packed, else nothing.
+
+    Raises FormatError for a payload that is not one zstd frame of that length.
+    """
     if entry.packing == "raw":
         return entry.payload
     try:
@@ -114,7 +119,7 @@ def content(entry: Entry) -> memoryview:
 
 
 def pack_content(content: bytes, budget: int) -> tuple[str, bytes]:
-    """Packing and payload: the shorter of raw and zstd, raw beyond `budget` bytes."""
+    """Packing, "raw" or "zstd", and payload: the shorter of both, raw beyond `budget` bytes."""
     level = _ZSTD_LEVEL if len(content) < _LARGE else _ZSTD_LEVEL_LARGE
     squeezed = zstandard.ZstdCompressor(level=level, write_content_size=True).compress(content)
     if len(squeezed) < len(content) <= budget:

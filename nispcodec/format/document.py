@@ -16,7 +16,11 @@ from nispcodec.format.record import located
 
 @dataclass(frozen=True)
 class SectionInfo:
-    """One section of a file; `parts` splits its decoded bytes by what they hold, where it can."""
+    """One section of a file.
+
+    Lengths and offset are in bytes; `parts` splits the decoded length of NETS by network and that
+    of TXTR by texture.
+    """
 
     code: str
     critical: bool
@@ -30,7 +34,8 @@ class SectionInfo:
 def pack(document: Document, coding: str | None = None) -> bytes:
     """The bytes of a file. `coding` forces one weight coding; by default the smallest is taken.
 
-    The same document gives the same bytes. Raises `FormatError` for a document beyond the caps.
+    The same document gives the same bytes. Raises FormatError for a document beyond the caps, an
+    unknown coding, and weights that are not multiples of their step.
     """
     if known := sorted(set(document.extra) & set(SECTIONS)):
         raise FormatError(known[0], "extra", "a code unknown to this version", known[0])
@@ -45,14 +50,14 @@ def pack(document: Document, coding: str | None = None) -> bytes:
 
 
 def unpack(data: bytes) -> Document:
-    """A file's bytes -> its document. Raises `FormatError` and nothing else, whatever the bytes."""
+    """A file's bytes -> its document. Raises FormatError and nothing else, whatever the bytes."""
     return _parse(data)[0]
 
 
 def inspect(data: bytes) -> list[SectionInfo]:
     """The sections of a file in file order, with what their bytes are spent on.
 
-    Raises `FormatError` as `unpack` does.
+    Raises FormatError as `unpack` does.
     """
     document, entries, lengths = _parse(data)
     images = {texture.name: len(texture.data) for texture in document.textures}

@@ -25,7 +25,7 @@ _ENDING = dict(zip(MIME_TYPES, ENDINGS, strict=True))
 
 
 def encode_material(material: Material) -> dict[int, Any]:
-    """The fields of one material."""
+    """A material -> its map in META. Raises FormatError for what META cannot hold."""
     path = f"materials.{material.name}"
     check_text(META, f"{path}.name", material.name)
     maps = {
@@ -48,7 +48,7 @@ def encode_material(material: Material) -> dict[int, Any]:
 
 
 def decode_material(index: int, value: Any) -> Material:
-    """Material `index` of the file."""
+    """A map in META -> material `index` of the file. Raises FormatError for a malformed field."""
     record = Record(META, f"materials.{index}", value)
     red, green, blue, alpha = record.floats(2, "base_color", 4, _WHITE)
     glow_red, glow_green, glow_blue = record.floats(5, "emissive", 3, _BLACK)
@@ -74,7 +74,10 @@ def decode_material(index: int, value: Any) -> Material:
 
 
 def encode_textures(textures: Sequence[Texture]) -> list[dict[int, Any]]:
-    """The fields of every texture; the bytes go to TXTR, whose end is that of the last."""
+    """The map in META of every texture; the bytes go to TXTR, whose end is that of the last.
+
+    Raises FormatError for a name that is no bare file name with an ending, or an unknown type.
+    """
     fields = [_encode_texture(texture) for texture in textures]
     for each, texture in zip(fields[:-1], textures, strict=False):
         each[3] = len(texture.data)
@@ -82,7 +85,11 @@ def encode_textures(textures: Sequence[Texture]) -> list[dict[int, Any]]:
 
 
 def decode_textures(values: list[Any]) -> tuple[tuple[str, str, int | None], ...]:
-    """Name, mime type and length of every texture; None for the last: what is left of TXTR."""
+    """Maps in META -> name, mime type and length in bytes of every texture.
+
+    The length of the last is None: it is what is left of TXTR. Raises FormatError for a malformed
+    field.
+    """
     return tuple(
         _decode_texture(Record(META, f"textures.{index}", value), index == len(values) - 1)
         for index, value in enumerate(values)

@@ -23,7 +23,10 @@ _MOST = 1000.0
 
 
 def encode(info: Mapping[str, Scalar]) -> dict[int | str, Scalar]:
-    """The map on disk."""
+    """A document's `info` -> its map on disk.
+
+    Raises FormatError for a value that is no text, number or bool, and a preset that is no text.
+    """
     for key, value in info.items():
         if not isinstance(key, str) or not isinstance(value, (str, int, float, bool)):
             raise _error(key, _PLAIN, type(value).__name__)
@@ -34,7 +37,10 @@ def encode(info: Mapping[str, Scalar]) -> dict[int | str, Scalar]:
 
 
 def decode(stored: dict[Any, Any]) -> dict[str, Scalar]:
-    """The inverse of `encode`; a float32 comes back as the shortest decimal that means it."""
+    """The inverse of `encode`; a float32 comes back as the shortest decimal that means it.
+
+    Raises FormatError for an unknown number, and for a text that has a number.
+    """
     info: dict[str, Scalar] = {}
     for key, value in stored.items():
         if type(value) not in (str, int, float, bool):

@@ -26,7 +26,10 @@ _UV_MAP = (0.0, 0.0, 1.0, 1.0)
 
 @dataclass(frozen=True)
 class Metadata:
-    """What META holds; `textures` are (name, mime, length in TXTR); the last takes what is left."""
+    """The content of META: a document without its weights and images.
+
+    `textures` are (name, mime type, bytes in TXTR); None for the last, which takes what is left.
+    """
 
     frame: Frame
     charts: ChartTable
@@ -38,7 +41,7 @@ class Metadata:
 
 
 def encode(document: Document) -> bytes:
-    """The bytes of META."""
+    """The bytes of META. Raises FormatError for a document that META cannot hold."""
     table = document.charts
     specs = {name: network.spec for name, network in document.networks.items()}
     fields: dict[int, tuple[Any, Any]] = {
@@ -58,7 +61,10 @@ def encode(document: Document) -> bytes:
 
 
 def decode(data: bytes | memoryview) -> Metadata:
-    """The content of META, each field checked; the relations between them are `Document`'s."""
+    """The content of META, each field checked; `Document` checks the relations between them.
+
+    Raises FormatError for malformed bytes.
+    """
     record = Record(META, "document", canonical.decode(META, data))
     x, y, z, radius = record.floats(1, "frame", 4)
     count = record.integer(3, "charts", 1, MAX_CHARTS, 1)

@@ -14,7 +14,9 @@ T = TypeVar("T")
 class Record:
     """The map at `path` of a section. A field with its default is absent; unknown keys are errors.
 
-    Every getter takes the key on disk, the field's name for the error, and the default.
+    Every getter takes the key on disk, the field's name for the error, and the default; it removes
+    the field from the record. Raises FormatError, naming the field, for a value that is no map, and
+    in every getter for a field that is missing, malformed or has its default.
     """
 
     def __init__(self, section: str, path: str, value: Any) -> None:
@@ -28,7 +30,7 @@ class Record:
         return key in self._values
 
     def take(self, key: int, name: str, kind: type[T], default: T | None = None) -> T:
-        """The value of one field, removed from the record; without default it is required."""
+        """A field of one type, which must be that exactly; without default it is required."""
         if key not in self._values:
             if default is None:
                 raise self.error(name, "present", "absent")
@@ -68,35 +70,44 @@ class Record:
         return value
 
     def finish(self) -> None:
-        """Raises for keys that no getter asked for."""
+        """Raises FormatError for keys that no getter asked for."""
         if self._values:
             raise self.error("keys", "only known keys", min(map(repr, self._values)))
 
     def error(self, name: str, expected: object, found: object) -> FormatError:
-        """An error at this record."""
+        """An error at field `name` of this record, to be raised by the caller."""
         return FormatError(self.section, f"{self.path}.{name}", expected, found)
 
 
 def sparse(fields: dict[int, tuple[Any, Any]]) -> dict[int, Any]:
-    """{key: (value, default)} without the fields that have their default."""
+    """{key: (value, default)} -> {key: value} of the fields that do not have their default."""
     return {key: value for key, (value, default) in fields.items() if value != default}
 
 
 def number(section: str, path: str, value: str, members: tuple[str, ...]) -> int:
-    """A member's number on disk."""
+    """A member's number on disk: its position in `members`, counted from 1.
+
+    Raises FormatError at `path` of the section when it is no member.
+    """
     if value not in members:
         raise FormatError(section, path, f"one of {', '.join(members)}", value)
     return 1 + members.index(value)
 
 
 def check_text(section: str, path: str, value: str) -> None:
-    """No control characters: names go into text formats (MTL) where a line break is a command."""
+    """Raises FormatError at `path` of the section for a text with control characters.
+
+    Names go into text formats (MTL) where a line break is a command.
+    """
     if any(ord(letter) < 32 or ord(letter) == 127 for letter in value):
         raise FormatError(section, path, "text without control characters", repr(value))
 
 
 def check_file_name(section: str, path: str, value: str) -> None:
-    """A bare file name: whoever unpacks a file must not be led out of the folder."""
+    """Raises FormatError at `path` of the section for a text that is no bare file name.
+
+    Whoever unpacks a file must not be led out of the folder.
+    """
     check_text(section, path, value)
     if value in ("", ".", "..") or any(letter in value for letter in "/\\:"):
         raise FormatError(section, path, "a bare file name", repr(value))
@@ -104,7 +115,10 @@ def check_file_name(section: str, path: str, value: str) -> None:
 
 @contextmanager
 def located(section: str, path: str) -> Iterator[None]:
-    """Errors of the shared types, which know no section, get theirs."""
+    """Raises errors of the types in `core`, which know no section, as FormatError with theirs.
+
+    A field is named below `path`.
+    """
     try:
         yield
     except FormatError as error:

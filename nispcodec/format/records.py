@@ -32,9 +32,10 @@ _NONE = [np.zeros(1, np.int64)]
 
 @dataclass(frozen=True)
 class Record:
-    """Tensors to write together; `before` is the step of the tensor before them.
+    """Tensors to write together, all of one step.
 
-    Rows have row shifts of `width` bits, none where that is 0.
+    before   the step of the tensor before them, None if it has none
+    width    bits of the row shifts; 0 where rows have none
     """
 
     coding: Coding
@@ -44,13 +45,16 @@ class Record:
 
     @cached_property
     def run(self) -> entropy.SymbolRun | None:
-        """What goes to the stream, if anything does."""
+        """The values that go to the stream; None for a coding that has its own payload."""
         if self.coding.codec:
             return None
         return entropy.SymbolRun(np.concatenate([each.ravel() for each in self._values]))
 
     def encode(self) -> bytes:
-        """Tag, step, row shifts, and the payload, or the initial scales and the run's header."""
+        """The bytes: tag, step, row shifts, then the payload, or initial scales and run header.
+
+        Raises FormatError for a step that is no positive float32.
+        """
         first, form, step = self.tensors[0], 0, b""
         if first.step is not None:
             row_shifts = np.concatenate(self._row_shifts)
@@ -84,10 +88,10 @@ class Record:
 
 @dataclass(frozen=True)
 class Part:
-    """A record that was read: the tensors it is of, their step, their values or the run's header.
+    """A record that was read: names and step of its tensors, and their values or the run's header.
 
-    Symbols are what is read, plus what is `expected`, times two to the power of `row_shifts`;
-    either for each weight or for all.
+    Symbols are the values read, plus `expected`, times two to the power of `row_shifts`. Both are
+    (n,) for the n weights, or (1,) for all of them.
     """
 
     names: list[str]
@@ -99,11 +103,14 @@ class Part:
 
 
 Candidate = tuple[int, int, Record]
-"""A record of the tensors from one number to below another."""
+"""The first tensor of a record, the one after its last, and the record."""
 
 
 def candidates(name: str, network: Network) -> list[Candidate]:
-    """Every record that tensors of a network can make."""
+    """Every record that tensors of a network, `name` in errors, can make.
+
+    Raises FormatError as `tensors` does.
+    """
     every = tensors(name, network)
     found = []
     for start in range(len(every)):
@@ -131,7 +138,10 @@ def _records(run: list[Tensor], before: float | None) -> Iterator[Record]:
 
 
 def cheapest(candidates: list[Candidate], codings: Sequence[Coding]) -> list[Record]:
-    """The records that cover all tensors, in some of the codings, in the fewest bytes."""
+    """The records that cover all tensors in the fewest bytes, of candidates in the `codings`.
+
+    Shortest path over the tensors, in file order.
+    """
     plans: dict[int, tuple[float, list[Record]]] = {0: (0.0, [])}
     for start, end, record in candidates:
         if record.coding in codings:
@@ -142,9 +152,9 @@ def cheapest(candidates: list[Candidate], codings: Sequence[Coding]) -> list[Rec
 
 
 def tensors(name: str, network: Network) -> list[Tensor]:
-    """Those of a network, as they are written.
+    """The tensors of a network, `name` in errors, as they are written.
 
-    Raises `FormatError` for weights that are not multiples of their step.
+    Raises FormatError for weights that are not multiples of their step.
     """
     found, initial = [], network.spec.initial_integers(network.tensors)
     for key, tensor in network.tensors.items():
@@ -157,7 +167,7 @@ def tensors(name: str, network: Network) -> list[Tensor]:
 
 
 def read(reader: Reader, path: str, spec: NetworkSpec) -> list[Part]:
-    """The records of the network at `path`."""
+    """The records of a network, `path` in errors. Raises FormatError at the reader's place."""
     parts: list[Part] = []
     names = list(spec.shapes)
     while names:

@@ -1,6 +1,6 @@
 """A quantization step in the fewest bytes: none if as before, one byte, float16 or float32.
 
-Where rows matter more or less, symbols of a row are multiples of a power of two: its row shift.
+Where some rows need less precision, their symbols are multiples of a power of two: the row shift.
 """
 
 from __future__ import annotations
@@ -21,16 +21,18 @@ _VALUES = list(_BYTE)
 
 
 def has_row_shifts(step: float) -> bool:
-    """Whether rows may have row shifts beside this step."""
+    """Whether rows may have row shifts beside this step: it must fit in one byte."""
     return float(np.float32(step)) in _BYTE
 
 
 def encode(
     path: str, step: float, before: float | None, row_shifts: IntArray, width: int
 ) -> tuple[str, bytes]:
-    """Form and bytes of a step; `before` is that of the record before, if it has one.
+    """Form, one of `STEPS`, and bytes of a step and its row shifts.
 
-    row_shifts  (rows,) in `width` bits each, where that is not 0
+    `before` is the step of the record before, None if it has none. row_shifts (rows,) are written
+    in `width` bits each, and not at all where that is 0. Raises FormatError, naming the tensor at
+    `path`, for a step that is no positive float32.
     """
     single = float(np.float32(step))
     if not 0 < single < np.inf:
@@ -50,7 +52,10 @@ def encode(
 
 
 def decode_row_shifts(reader: Reader, form: str, rows: int) -> Int64Array:
-    """(rows,) the row shifts that follow a step; none are 0."""
+    """The row shifts (rows,) that follow a step; all 0 where its form has none.
+
+    Raises FormatError at the reader's place.
+    """
     if not form.startswith("rows"):
         return np.zeros(rows, np.int64)
     widths = np.full(rows, int(form.removeprefix("rows")), np.uint8)
@@ -58,7 +63,7 @@ def decode_row_shifts(reader: Reader, form: str, rows: int) -> Int64Array:
 
 
 def decode(reader: Reader, form: str, before: float | None) -> float:
-    """The inverse of `encode`, but for row shifts."""
+    """The inverse of `encode`, but for row shifts. Raises FormatError at the reader's place."""
     if form == "same":
         if before is None:
             raise reader.error("step", "a step in the record before", "none")

@@ -1,4 +1,4 @@
-"""A tensor to write: what of its weights the file need not say again."""
+"""A tensor to write: its symbols, and how much of them initial weights and row shifts imply."""
 
 from __future__ import annotations
 
@@ -15,8 +15,10 @@ from nispcodec.format.constants import MAX_SYMBOL
 
 @dataclass(frozen=True)
 class Tensor:
-    """Its step, if it is quantized; its weights or symbols; its initial weights.
+    """One tensor of a network as a matrix; a bias is one row.
 
+    path    network and tensor, for errors
+    step    quantization step, None where weights are not quantized
     matrix  (rows, columns) float32 weights, or int32 symbols
     initial (rows, columns) integers of `nispcodec.core.initial_weights`
     """
@@ -39,14 +41,20 @@ class Tensor:
 
     @cached_property
     def row_shifts(self) -> Int64Array:
-        """(rows,) the largest powers of two that all symbols of a row are multiples of."""
+        """(rows,) int64: the largest power of two that divides all symbols of each row.
+
+        At most MAX_ROW_SHIFT, and 0 where weights are not quantized.
+        """
         if self.step is None:
             return np.zeros(len(self.matrix), np.int64)
         every = np.bitwise_or.reduce(self.matrix, axis=1).astype(np.int64) | 1 << MAX_ROW_SHIFT
         return np.log2(every & -every).astype(np.int64)
 
     def values(self, row_shifts: Int64Array, delta: bool) -> AnyArray:
-        """(rows, columns) weights, or symbols by these row shifts; `delta`: less predictions."""
+        """(rows, columns): the weights, or the symbols shifted right by row_shifts (rows,).
+
+        With `delta` the symbols are less what the initial weights predict.
+        """
         if self.step is None:
             return self.matrix
         symbols = self.matrix >> row_shifts[:, None]

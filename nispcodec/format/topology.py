@@ -1,4 +1,4 @@
-"""Network topologies in META: what of a `NetworkSpec` the rest of the file does not imply."""
+"""Network topologies in META: the part of each `NetworkSpec` that the file does not imply."""
 
 from __future__ import annotations
 
@@ -11,14 +11,20 @@ from nispcodec.format.record import Record, located, number, sparse
 
 
 def encode(specs: dict[str, NetworkSpec]) -> dict[int, Any]:
-    """{network number: fields}."""
+    """Specs by network name -> {network number: its map in META}.
+
+    Raises FormatError for a conditioning that only UV networks may have.
+    """
     return {
         1 + NETWORKS.index(name): _fields(f"networks.{name}", spec) for name, spec in specs.items()
     }
 
 
 def decode(record: Record, charts: int) -> dict[str, NetworkSpec]:
-    """The specs by network name, in the order of `NETWORKS`; `charts` is the number of charts."""
+    """The specs by network name, in the order of `NETWORKS`; `charts` is the number of charts.
+
+    Raises FormatError for malformed fields and without an SDF network.
+    """
     specs = {
         name: _read(Record(META, f"networks.{name}", record.take(key, name, dict)), name, charts)
         for key, name in enumerate(NETWORKS, 1)

@@ -1,4 +1,4 @@
-"""What is wrong with a file: everything that can be checked without the original asset."""
+"""The problems of a file: everything that can be checked without the original asset."""
 
 from __future__ import annotations
 
@@ -21,8 +21,8 @@ def verify(data: bytes, decode_texture: Callable[[Texture], object]) -> list[For
     """The problems of a file, none if it is sound.
 
     Structure, checksums, caps, canonical form and finite weights are the parser's: its first error
-    is the only problem then. `decode_texture` raises `NispError` for an image that does not decode;
-    it is the caller's so that the format needs no image library.
+    is the only problem then. `decode_texture` raises NispError for an image that does not decode;
+    it is the caller's so that the format needs no image library. Raises nothing itself.
     """
     try:
         document = unpack(data)

@@ -19,7 +19,11 @@ from nispcodec.format.records import Part, Record
 
 
 def encode(networks: dict[str, Network], coding: str | None) -> bytes:
-    """All tensors in file order; `coding` None takes the fewest bytes."""
+    """The bytes of NETS: all tensors in file order; `coding` None takes the fewest bytes.
+
+    Raises FormatError for an unknown coding, more than `MAX_WEIGHTS` weights, and weights that are
+    not multiples of their step.
+    """
     if coding is not None and coding not in BY_NAME:
         raise FormatError(NETS, "coding", f"one of {', '.join(CODINGS)}", coding)
     _check_count([network.spec for network in networks.values()])
@@ -45,6 +49,7 @@ def decode(
     """The networks of these specs, `MAX_WEIGHTS` weights at most, and the bytes of each.
 
     The stream is one for all networks: its bytes are split by the bits that each of them needs.
+    Raises FormatError for malformed bytes.
     """
     _check_count(list(specs.values()))
     reader = Reader(NETS, data)

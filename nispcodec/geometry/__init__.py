@@ -1,1 +1,1 @@
-"""What an asset is: solid, distance, charts, symmetry, openings."""
+"""Analysis of an asset: solid, distance, charts, symmetry, openings."""

@@ -25,6 +25,7 @@ from nispcodec.geometry.symmetry import Symmetry, find_symmetry, folded, mirrore
 class Analysis:
     """One asset, analyzed.
 
+    mesh             the asset, in the world frame; all else is in the normalized frame
     frame            from the normalized frame to the world
     patches          the charts of the mesh, cut where they meet themselves
     label            distance, chart (after merging) and UV of any points
@@ -61,7 +62,8 @@ def analyze(
 ) -> Analysis:
     """Analyze an asset: the same mesh and seed, the same analysis.
 
-    Raises MeshError when nothing of it can be held by a signed distance.
+    The mesh is in the world frame. Raises MeshError when nothing of it can be held by a signed
+    distance.
     """
     random = np.random.default_rng([seed, 0])
     frame = normalizing_frame(mesh)
@@ -85,7 +87,10 @@ def analyze(
 
 
 def normalizing_frame(mesh: TexturedMesh) -> Frame:
-    """Bounding-box center to 0, farthest vertex to radius 1; only vertices of faces count."""
+    """The normalized frame of a mesh: bounding-box center at 0, farthest vertex at radius 1.
+
+    Only vertices that faces use count.
+    """
     used = mesh.positions[np.unique(mesh.faces)]
     center = (used.min(axis=0) + used.max(axis=0)) / 2
     radius = float(np.linalg.norm(used - center, axis=1).max())

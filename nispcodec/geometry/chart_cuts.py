@@ -22,7 +22,7 @@ def split_self_seams(mesh: TexturedMesh, charts: Charts) -> Charts:
     """The charts, with those that meet themselves cut so that no seam has one chart on both sides.
 
     Corners along one side of a seam belong together, corners across it apart: a graph coloring of
-    the sides. Each face goes with the side that is nearest along the surface.
+    the sides. Each face goes with the side that is nearest along edges (Dijkstra).
     """
     corners = _corners(mesh, charts)
     seams = _seams(mesh, corners)

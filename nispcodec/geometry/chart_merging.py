@@ -26,12 +26,12 @@ Kind = tuple[int, bool]
 
 @dataclass(frozen=True)
 class Cover:
-    """n points on the visible surface, of every chart some: all that merging looks at.
+    """n points on the visible surface, some on every chart: all that merging looks at.
 
     points       (n, 3) normalized frame
     charts       (n,) before merging
-    coordinates  (n, d) as the UV network sees the points: of mirrored axes the absolute value
-    uvs          (n, 2)
+    coordinates  (n, d) as the UV network sees the points: the absolute value on mirrored axes
+    uvs          (n, 2) as the UV network gives them
     """
 
     points: Float64Array
@@ -47,8 +47,8 @@ def merge_charts(
 
     mirrored (t, 2): pairs of charts whose UVs are the same function of `coordinates`, near or far.
     Of all charts that could share a label those do whose UVs are most nearly one affine map of the
-    coordinates: the least is left to learn for the UV network. There are more labels than needed
-    where that saves enough.
+    coordinates: that leaves the least to learn for the UV network. There are more labels than
+    needed where that saves enough.
     """
     alike = (charts.materials[mirrored] == charts.materials[mirrored[:, :1]]).all(axis=1)
     group = _groups(len(charts), mirrored[alike])

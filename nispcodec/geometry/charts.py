@@ -17,7 +17,12 @@ Kind = TypeVar("Kind")
 
 @dataclass(frozen=True)
 class Charts:
-    """The charts of one mesh: face_charts (m,) int32 in 0 ... k-1; materials (k,); has_uv (k,)."""
+    """The k charts of a mesh of m faces.
+
+    face_charts  (m,) int32, 0 to k - 1: the chart of each face
+    materials    (k,) int32, into the mesh's materials
+    has_uv       (k,) bool: which charts have UVs
+    """
 
     face_charts: Int32Array
     materials: Int32Array
@@ -51,9 +56,10 @@ def colored(
 ) -> tuple[list[int], list[Kind]]:
     """Color a graph so that neighbors differ and every color is of one kind.
 
-    Returns each node's color and each color's kind: those of the `palette` to begin with, and one
-    more whenever no other is left; of several `choose(node, colors)` takes one. Most constrained
-    node first (Welsh and Powell 1967).
+    `neighbors` holds the neighbors of each node, `kinds` its kind. Returns the color of each node
+    and the kind of each color. The colors are those of `palette` to begin with, and one more
+    whenever a node finds none; `choose(node, colors)` takes one of several. Nodes with the most
+    neighbors come first (Welsh and Powell 1967).
     """
     color = [-1] * len(neighbors)
     kind_of_color = list(palette)
@@ -68,7 +74,7 @@ def colored(
 
 
 def uv_ids(mesh: TexturedMesh) -> Int64Array:
-    """(m, 3): equal UVs get equal numbers; -1 on faces without UV."""
+    """(m, 3) int64, a number for each face corner: equal for equal UVs, -1 on faces without UV."""
     if not len(mesh.uvs):
         return np.full(mesh.faces.shape, -1, dtype=np.int64)
     return np.where(mesh.has_uv[:, None], row_ids(mesh.uvs)[mesh.uv_faces], -1)

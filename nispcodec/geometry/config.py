@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 
 @dataclass(frozen=True)
 class SolidConfig:
-    """What of a mesh is inside, hidden, or an open surface.
+    """Which parts of a mesh are inside, hidden, or an open surface.
 
     probe_offset      how far off a face one looks to tell which of its sides are inside
     half_thickness    given to open surfaces: a field that is thinner would not be learned
@@ -121,12 +121,12 @@ class OpeningsConfig:
 
 @dataclass(frozen=True)
 class GeometryConfig:
-    """All of them.
+    """Every tuned number of the geometry.
 
     merging       None leaves charts as the mesh has them, and openings without a chart
     filled_atlas  UVs that fill so much of the unit square in both directions stay as they are: no
                   map to store
-    cube          half the side of the cube that anybody asks about: the asset's, and some room
+    cube          half the side of the cube that samples come from: the unit ball's, and some room
     """
 
     solid: SolidConfig = field(default_factory=SolidConfig)

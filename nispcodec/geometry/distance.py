@@ -15,7 +15,12 @@ from nispcodec.geometry.z_order import z_order
 
 @dataclass(frozen=True)
 class Closest:
-    """(n,) signed distance; (n,) index of the closest piece; (n, 3) the closest point on it."""
+    """The closest surface points of n points, normalized frame.
+
+    sdf    (n,) signed distance, negative inside
+    piece  (n,) index of the closest piece of the solid
+    point  (n, 3) the closest point on it
+    """
 
     sdf: Float64Array
     piece: Int64Array
@@ -25,8 +30,9 @@ class Closest:
 class DistanceField:
     """The union of the bodies and of the open surfaces, thickened, as a signed distance.
 
-    libigl's own signed distance scales magnitudes by the winding number, so magnitude and sign are
-    computed apart: exact point-triangle distance, and inside where |winding number| > 1/2.
+    Normalized frame. libigl's own signed distance scales magnitudes by the winding number, so
+    magnitude and sign are computed apart: exact point-triangle distance, and inside where |winding
+    number| > 1/2 (Jacobson et al. 2013).
     """
 
     def __init__(self, solid: Solid, sheet_lift: float = SolidConfig.sheet_lift) -> None:
@@ -53,7 +59,7 @@ class DistanceField:
         )
 
     def inside(self, points: Float64Array) -> BoolArray:
-        """Which of (n, 3) points lie inside the bodies, open surfaces left out."""
+        """(n,) bool: which points (n, 3) lie inside the bodies; open surfaces are left out."""
         return np.abs(self.solid.winding.at(points)) > 0.5
 
 

@@ -19,7 +19,11 @@ from nispcodec.geometry.surface_points import barycentric
 class Labeling:
     """Labels points by the faces of one mesh, its charts and its chart table.
 
-    corners (m, 3, 3), normalized frame; uvs (m, 3, 2), the asset's
+    field    the signed distance
+    corners  (m, 3, 3) every face's corners, normalized frame
+    uvs      (m, 3, 2) their UVs, as in the asset
+    charts   the chart of each face
+    table    the charts as the file has them, and the map of the UVs
     """
 
     field: DistanceField
@@ -53,8 +57,8 @@ class Labeling:
 def chart_table(mesh: TexturedMesh, charts: Charts, filled: float) -> ChartTable:
     """The chart table, with the affine map that brings the used UVs to [0, 1]^2.
 
-    The identity where they lie within the unit square and fill so much of it in both directions: it
-    takes no bytes.
+    The map is the identity, which takes no bytes, where UVs lie within the unit square and fill at
+    least the share `filled` of it in both directions.
     """
     used = mesh.corner_uvs[mesh.has_uv].reshape(-1, 2)
     if not len(used):

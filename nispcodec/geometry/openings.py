@@ -19,8 +19,8 @@ def crossings(
 ) -> Float64Array:
     """Points (k, 3) on closing surfaces, looked for around points (n, 3), normalized frame.
 
-    A step shorter than the distance to the mesh cannot cross it; where the sign changes on such a
-    step nevertheless, it crosses a closing surface.
+    Each point takes one step in a random direction, shorter than its distance to the mesh, so that
+    it cannot cross the mesh. Where the sign changes nevertheless, it crosses a closing surface.
     """
     direction = random.normal(size=points.shape)
     direction /= np.linalg.norm(direction, axis=1, keepdims=True)
@@ -39,7 +39,10 @@ def spread_over(
     random: np.random.Generator,
     config: OpeningsConfig,
 ) -> Float64Array:
-    """About `count` points (n, 3) on the closing surfaces that the seeds (k, 3) lie on."""
+    """Up to `count` points (n, 3) on the closing surfaces that the seeds (k, 3) lie on.
+
+    Normalized frame; the first points are the seeds.
+    """
     found = [seeds]
     for _ in range(config.spreads):
         missing = count - sum(map(len, found))

@@ -31,9 +31,9 @@ class Solid:
     open_surface   (p,) bool: pieces that get a thickness
     wall           (p,) bool: pieces with an inside; an open surface that is one too is one side of
                    a double-sided sheet
-    winding        of the closed or nearly closed bodies: where it is beyond 1/2 is inside
-    half_thickness of open surfaces, normalized frame
-    hidden_share, open_surface_share: of the mesh's area
+    winding        winding number of the closed or nearly closed bodies: beyond 1/2 is inside
+    half_thickness given to open surfaces, normalized frame
+    hidden_share, open_surface_share: shares of the mesh's area
     """
 
     pieces: Float64Array
@@ -47,7 +47,11 @@ class Solid:
 
 
 def build_solid(corners: Float64Array, config: SolidConfig = SolidConfig()) -> Solid:
-    """Sort the faces (m, 3, 3), normalized frame. Raises MeshError when none can be seen."""
+    """Sort the faces of a mesh by what a signed distance can hold.
+
+    corners (m, 3, 3): every face's corners, normalized frame. Raises MeshError when no face can be
+    seen from outside.
+    """
     free = _free_bodies(corners, config)
     bodies = corners[~free]
     winding = Winding(bodies, config.winding_accuracy)
@@ -72,20 +76,24 @@ def build_solid(corners: Float64Array, config: SolidConfig = SolidConfig()) -> S
 
 
 def area(triangles: Float64Array) -> Float64Array:
-    """(n, 3, 3) -> (n,)."""
+    """The areas (n,) of triangles (n, 3, 3)."""
     doubled: Float64Array = np.linalg.norm(_cross(triangles), axis=1)
     return doubled / 2
 
 
 def normals(triangles: Float64Array) -> Float64Array:
-    """(n, 3, 3) -> (n, 3), unit length; zero for degenerate triangles."""
+    """The unit normals (n, 3) of triangles (n, 3, 3); 0 for degenerate ones."""
     cross = _cross(triangles)
     length = np.linalg.norm(cross, axis=1, keepdims=True)
     return np.divide(cross, length, out=np.zeros_like(cross), where=length > 0)
 
 
 class Winding:
-    """Generalized winding number of a triangle soup (m, 3, 3); `accuracy` is libigl's."""
+    """Generalized winding number of a triangle soup (m, 3, 3), by libigl.
+
+    Fast winding numbers (Barill et al. 2018): `accuracy` is how many radii away a cluster of
+    triangles is taken as one.
+    """
 
     def __init__(self, bodies: Float64Array, accuracy: float) -> None:
         self._accuracy = accuracy
@@ -96,7 +104,7 @@ class Winding:
             self._tree.init(np.ascontiguousarray(bodies.reshape(-1, 3)), faces)
 
     def at(self, points: Float64Array) -> Float64Array:
-        """(n, 3) -> (n,)."""
+        """The winding number (n,) at points (n, 3); 0 everywhere for a soup of no triangles."""
         if self._empty or not len(points):
             return np.zeros(len(points))
         order = z_order(points)

@@ -11,7 +11,10 @@ TINY = np.finfo(np.float64).tiny
 
 
 def barycentric(triangles: Float64Array, points: Float64Array) -> Float64Array:
-    """Barycentric coordinates (n, 3) of points (n, 3) in the planes of triangles (n, 3, 3)."""
+    """Barycentric coordinates (n, 3) of points (n, 3) in the planes of triangles (n, 3, 3).
+
+    Those of points outside their triangle are clipped to it.
+    """
     ab, ac = triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0]
     ap = points - triangles[:, 0]
     bb, bc, cc, pb, pc = (
@@ -24,7 +27,7 @@ def barycentric(triangles: Float64Array, points: Float64Array) -> Float64Array:
 
 
 def random_barycentric(random: np.random.Generator, count: int) -> Float64Array:
-    """(count, 3) barycentric coordinates, uniform over a triangle."""
+    """(count, 3) barycentric coordinates, uniform over a triangle (Osada et al. 2002)."""
     root = np.sqrt(random.random(count))
     second = random.random(count)
     return np.stack([1 - root, root * (1 - second), root * second], axis=1)
@@ -40,7 +43,7 @@ def uniform_surface(
 def points_on(
     random: np.random.Generator, pieces: Float64Array, weight: Float64Array, count: int
 ) -> tuple[Float64Array, Int64Array]:
-    """As `uniform_surface`, with pieces drawn by their weight (p,) in place of their area."""
+    """As `uniform_surface`, with pieces chosen by their weight (p,) in place of their area."""
     piece = random.choice(len(pieces), size=count, p=weight / weight.sum())
     weights = random_barycentric(random, count)
     return np.einsum("nc,ncx->nx", weights, pieces[piece]), piece
@@ -49,7 +52,10 @@ def points_on(
 def solid_surface(
     random: np.random.Generator, solid: Solid, count: int
 ) -> tuple[Float64Array, Int64Array]:
-    """As `uniform_surface`, those on open surfaces moved to where the thickness ends."""
+    """Points (count, 3) uniform by area on a solid's surface, and the piece (count,) of each.
+
+    Points on open surfaces lie where the thickness ends.
+    """
     points, piece = uniform_surface(random, solid.pieces, count)
     return raised(random, solid, points, piece), piece
 
@@ -59,7 +65,8 @@ def raised(
 ) -> Float64Array:
     """Points (n, 3) on pieces (n,), those on open surfaces moved to where the thickness ends.
 
-    In front of one of two faces back to back; of a single one on either side. Changes `points`.
+    That is in front of one of two faces back to back, and on a random side of a single one. Changes
+    `points`, and returns it.
     """
     thick = np.flatnonzero(solid.open_surface[piece])
     on = piece[thick]
@@ -71,11 +78,11 @@ def raised(
 def laplace_offsets(
     random: np.random.Generator, surface: Float64Array, spread: float, limit: float
 ) -> Float64Array:
-    """Points beside surface points (n, 3) whose |SDF| has the mean `spread` (exact on a plane).
+    """Points (k, 3) beside surface points (n, 3), whose |SDF| has the mean `spread` on a plane.
 
     Each moves in a random direction by a Gamma(2, spread) distance: the part of that along the
-    normal is Laplace-distributed, and edges are surrounded from all sides. What leaves the cube
-    [-limit, limit]^3 is left out, so that fewer may come back.
+    normal is Laplace-distributed, and edges are surrounded from all sides. Points that leave the
+    cube [-limit, limit]^3 are left out, so that k may be less than n.
     """
     direction = random.normal(size=surface.shape)
     direction /= np.linalg.norm(direction, axis=1, keepdims=True)

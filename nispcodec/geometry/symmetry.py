@@ -19,16 +19,21 @@ from nispcodec.geometry.surface_points import uniform_surface
 
 @dataclass(frozen=True)
 class Symmetry:
-    """For the SDF, and for charts and UVs: `mirror` as in `nispcodec.core.network.NetworkSpec`."""
+    """The planes of symmetry: `mirror` as in `nispcodec.core.network.NetworkSpec`.
+
+    sdf  of the SDF network
+    uv   of the chart and UV networks
+    """
 
     sdf: int
     uv: int
 
 
 def find_symmetry(label: Labeling, config: SymmetryConfig = SymmetryConfig()) -> Symmetry:
-    """About which of the planes x, y, z = 0 of the normalized frame an asset is symmetric.
+    """Find about which of the planes x, y, z = 0 of the normalized frame an asset is symmetric.
 
-    Told by random points around its pieces, always the same.
+    Labels of random points near the surface, always the same ones, are compared with those of their
+    mirror images.
     """
     points = _probes(label.field.solid.pieces, config)
     here = label(points)
@@ -50,11 +55,11 @@ def find_symmetry(label: Labeling, config: SymmetryConfig = SymmetryConfig()) ->
 def asymmetric_samples(
     label: Labeling, near: SampleSet, signed_axes: int, alike: float
 ) -> list[SampleSet]:
-    """For each signed axis, samples where the asset is not like its image.
+    """For each signed axis, samples where the asset is not like its mirror image.
 
-    Of the mirror images of points near the surface those whose distance is another one: a network
-    that sees |x| puts a ghost there of what is on one side only, and no other samples would see
-    it. `signed_axes` has a bit for each axis; `alike` is how much distances may differ.
+    They are the mirror images of points `near` the surface whose distance differs by more than
+    `alike`. A part that is on one side only has its mirror image there in a network that sees |x|,
+    and no other samples would tell. `signed_axes` has a bit for each axis.
     """
     found = []
     for axis in _axes(signed_axes):
@@ -66,10 +71,10 @@ def asymmetric_samples(
 def mirrored_charts(
     label: Labeling, surface: SampleSet, mirrored: int, config: SymmetryConfig
 ) -> Int64Array:
-    """Pairs (t, 2) of charts that are mirror images of each other, with the same UVs.
+    """Pairs (t, 2) int64 of charts that are mirror images of each other, with the same UVs.
 
-    Most of a chart's points of the `surface` have their image on the other. `mirrored` has a bit
-    for each axis.
+    The share `config.mirrored` of the first chart's samples on the `surface` have their mirror
+    image on the second. `mirrored` has a bit for each axis.
     """
     sizes = np.bincount(surface.chart)
     found = [np.zeros((0, 2), dtype=np.int64)]
@@ -84,7 +89,7 @@ def mirrored_charts(
 
 
 def folded(points: Float64Array, mirrored: int) -> Float64Array:
-    """(n, 3) with the absolute value of the axes that have a bit in `mirrored`."""
+    """Points (n, 3) with the absolute value of the coordinates that have a bit in `mirrored`."""
     bits = [bool(mirrored >> axis & 1) for axis in range(3)]
     return np.where(bits, np.abs(points), points)
 

@@ -1,6 +1,6 @@
-"""Points in an order that follows space: a tree asked for neighbors in turn finds its way cached.
+"""Points in an order that follows space: queries to a tree one after another stay in the cache.
 
-Morton's Z-order curve. In random order distances take twice as long, winding numbers up to 1.4
+Z-order curve (Morton 1966). In random order distances take twice as long, winding numbers up to 1.4
 times (docs/decisions/0085-sampling-in-space-order.md).
 """
 
@@ -14,7 +14,10 @@ BITS = 7
 
 
 def z_order(points: Float64Array) -> Int64Array:
-    """The order (n,) of points (n, 3) along the curve through the cells of their bounding box."""
+    """Indices (n,) int64 that sort points (n, 3) along the Z-order curve.
+
+    The curve runs through 2^BITS cells a side of their bounding cube.
+    """
     if not len(points):
         return np.zeros(0, dtype=np.int64)
     low = points.min(axis=0)

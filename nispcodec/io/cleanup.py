@@ -1,4 +1,4 @@
-"""Clean-up common to all readers: drop what carries no surface, and say how much of it."""
+"""Clean-up common to all readers: faces and vertices without surface are dropped and counted."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ def clean(mesh: TexturedMesh, name: str) -> TexturedMesh:
 
 
 def degenerate_faces(mesh: TexturedMesh) -> BoolArray:
-    """(m,) bool: faces that repeat a position or whose area is zero to rounding."""
+    """(m,) bool: which faces repeat a position, or are lines to rounding (`FLATTEST`)."""
     corners = mesh.corners
     edges = np.roll(corners, -1, axis=1) - corners
     longest = np.linalg.norm(edges, axis=2).max(axis=1)
@@ -46,7 +46,7 @@ def degenerate_faces(mesh: TexturedMesh) -> BoolArray:
 
 
 def duplicate_faces(mesh: TexturedMesh) -> BoolArray:
-    """(m,) bool: faces equal to an earlier one in positions, orientation, UVs and material."""
+    """(m,) bool: which faces equal an earlier one in positions, orientation, UVs and material."""
     # Adding zero makes -0 and 0 the same bits.
     position = row_ids(mesh.positions + 0.0)[mesh.faces]
     uv = np.append(row_ids(mesh.uvs + 0.0), -1)[mesh.uv_faces]

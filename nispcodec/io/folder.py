@@ -12,7 +12,7 @@ from nispcodec.core.errors import MeshError
 
 @dataclass(frozen=True)
 class Folder:
-    """Finds files by the names that artists' tools leave in material files."""
+    """Finds files by the names that artists' tools leave in asset files."""
 
     path: Path
 
@@ -29,7 +29,7 @@ class Folder:
         return _walk(start, parts) or _walk(self.path, parts[-1:])
 
     def read(self, path: Path) -> bytes:
-        """The file's bytes; MeshError when it cannot be read."""
+        """The file's bytes. Raises MeshError when it cannot be read."""
         try:
             return path.read_bytes()
         except OSError as why:

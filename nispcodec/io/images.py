@@ -65,9 +65,11 @@ class TextureShelf:
         self._places: dict[bytes, int] = {}
 
     def add(self, name: str, data: bytes, place: str) -> int | None:
-        """The index of the texture with these bytes; `place` names the file in messages.
+        """The index of the texture with these bytes, which is added if it is new.
 
-        None, with a warning, for a sound format that is not supported.
+        `name` is the image's file name, `place` says in messages where it stands. None, with a
+        warning, for a format that is known but not supported. Raises MeshError for bytes that are
+        no image.
         """
         kind = _unsupported(data)
         if kind is not None:
@@ -96,7 +98,10 @@ class TextureShelf:
 
 
 def is_gray(data: bytes, place: str) -> bool:
-    """Whether an image has no color anywhere, by a coarse look."""
+    """Whether an image has no color anywhere, told from 64 x 64 of its texels.
+
+    `place` names it in messages. Raises MeshError for bytes that are no image.
+    """
     if _unsupported(data) is not None:
         return False
     small = _decoded(data, place).convert("RGB").resize((64, 64), PIL.Image.Resampling.NEAREST)

@@ -33,7 +33,7 @@ def load_mesh(path: str | Path) -> TexturedMesh:
     """Read OBJ, glTF, GLB, PLY, STL or OFF with its materials and textures, cleaned up.
 
     Positions are in the world frame, in the file's units; UVs have their origin bottom-left.
-    `warnings` of the mesh tell what was left out or guessed. Raises MeshError, naming the file and
+    `warnings` of the mesh say what was left out or guessed. Raises MeshError, naming the file and
     the place in it, for whatever cannot be read.
     """
     path = Path(path)

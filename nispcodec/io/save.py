@@ -41,10 +41,10 @@ def write_mesh(
 ) -> list[Path]:
     """Write the mesh in the format of the path's suffix -> the files written, `path` last.
 
-    An OBJ puts its MTL and images beside it. Each file is written under another name and then
-    renamed. `colors` (n, 4), sRGB-encoded in [0, 1], one a position, take the place of UVs,
-    materials and textures. Raises MeshError for an unknown suffix, no faces, colors that do not
-    fit or that the format cannot hold; NispError when writing fails.
+    An OBJ has its MTL and images beside it. Each file is written whole or not at all. `colors`
+    (n, 4), sRGB-encoded in [0, 1], one for each position, take the place of UVs, materials and
+    textures. Raises MeshError for an unknown suffix, no faces, colors that do not fit or that the
+    format cannot hold; NispError when writing fails.
     """
     path = Path(path)
     if not len(mesh.faces):

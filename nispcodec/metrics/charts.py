@@ -13,14 +13,17 @@ CLEARLY = 5e-3
 
 
 class Chooser(Protocol):
-    """A model: the charts (n,) of world points (n, 3), and their UVs (n, 2) on given charts."""
+    """A model that predicts charts and UVs, such as `nispcodec.model.NispModel`."""
 
     @property
-    def chart_materials(self) -> IntArray: ...
+    def chart_materials(self) -> IntArray:
+        """The material (k,) of each chart."""
 
-    def charts(self, points: Float64Array) -> IntArray: ...
+    def charts(self, points: Float64Array) -> IntArray:
+        """The charts (n,) of world points (n, 3)."""
 
-    def uv(self, points: Float64Array, *, charts: IntArray) -> FloatArray: ...
+    def uv(self, points: Float64Array, *, charts: IntArray) -> FloatArray:
+        """The UVs (n, 2) of world points (n, 3) on the charts (n,)."""
 
 
 def chart_accuracy(
@@ -28,10 +31,10 @@ def chart_accuracy(
 ) -> float:
     """Share of points on the surface whose predicted chart is right.
 
-    A model numbers charts as it likes: it may cut one, and give far ones the same number. So a
+    points (n, 3) in the world frame, the original's uvs (n, 2) and materials (n,) there. A model
+    numbers charts as it likes: it may cut one, and give charts far apart the same number. So a
     prediction is right when its chart is of the point's material and none of the others gives a
     UV that is closer by more than `CLEARLY` of the atlas. The first POINTS points are judged.
-    points (n, 3) world, uvs (n, 2), materials (n,).
     """
     points, uvs, materials = points[:POINTS], uvs[:POINTS], materials[:POINTS]
     predicted = model.charts(points)

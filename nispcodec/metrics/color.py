@@ -16,9 +16,10 @@ from nispcodec.metrics.uv import uv_at
 
 
 def color_at(surface: Surface, points: SurfacePoints) -> Float32Array:
-    """(n, 4) float32: sRGB-encoded base color and alpha at points of a surface.
+    """(n, 4) float32 in [0, 1]: sRGB-encoded base color and linear alpha at points of a surface.
 
-    Faces without UV show their material's factor alone.
+    Faces without UV show their material's factor alone. Raises MeshError for a texture that does
+    not decode.
     """
     mesh, faces = surface.mesh, points.faces
     owners, has_uv = mesh.face_materials[faces], mesh.has_uv[faces]
@@ -26,7 +27,10 @@ def color_at(surface: Surface, points: SurfacePoints) -> Float32Array:
 
 
 def color_psnr(original: Surface, decoded: Surface, directions: Iterable[Matches]) -> float:
-    """PSNR in dB of the RGB base colors of all pairs, sRGB-encoded, peak 1."""
+    """PSNR in dB of the RGB base colors of all pairs, sRGB-encoded, peak 1.
+
+    Raises MeshError for a texture that does not decode.
+    """
     matches = reduce(Matches.__add__, directions)
     first = color_at(original, matches.original)[:, :3].astype(np.float64)
     second = color_at(decoded, matches.decoded)[:, :3]

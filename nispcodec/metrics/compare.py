@@ -33,7 +33,12 @@ Report = dict[str, Group]
 class Reference:
     """An original, ready to be compared with any number of decodes; see `compare`.
 
-    surface in its normalized frame; sides of all the points drawn from it; seen, the outer ones.
+    surface   in its normalized frame
+    frame     that frame's place in the world
+    sides     of all the points drawn from the surface
+    seen      those of the points that are not hidden
+    samples   how many points are drawn from each surface
+    seed      of the random points
     """
 
     surface: Surface
@@ -45,7 +50,10 @@ class Reference:
 
     @classmethod
     def of(cls, original: TexturedMesh, *, samples: int = 100_000, seed: int = 0) -> Reference:
-        """Draw the points. Raises MeshError when the original has no surface."""
+        """Draw the points of an original in the world frame.
+
+        Raises MeshError when it has no surface.
+        """
         frame = frame_of(original)
         surface = Surface.of(original, frame)
         points = surface.sample(samples, np.random.default_rng([seed, 0]))
@@ -53,7 +61,10 @@ class Reference:
         return cls(surface, frame, sides, points[sides.outer], samples, seed)
 
     def compare(self, decoded: TexturedMesh, model: Chooser | None = None) -> Report:
-        """Distortion of one decode. Raises MeshError when it has no surface."""
+        """Distortion of one decode in the world frame, as `compare` has it.
+
+        Raises MeshError when it has no surface or a texture does not decode.
+        """
         original, second = self.surface, Surface.of(decoded, self.frame)
         others = second.sample(self.samples, np.random.default_rng([self.seed, 1]))
         directions = _match(original, second, self.seen, others)
@@ -83,10 +94,11 @@ def compare(
 ) -> Report:
     """Distortion of `decoded` against `original`, in the normalized frame of the original.
 
-    `samples` points are drawn from each surface, uniformly by area; of those on the original only
-    the outer ones count. The chart accuracy is there when the `model` to ask is given; uv when
-    the original has UVs. The same seed gives the same numbers.
-    Raises MeshError when a mesh has no surface.
+    Both meshes are in the world frame. `samples` points are drawn from each surface, uniformly by
+    area; of those on the original only the outer ones count. The chart accuracy is there when the
+    `model` to ask is given, uv and parameterization when the original has UVs. The same seed gives
+    the same numbers.
+    Raises MeshError when a mesh has no surface or a texture does not decode.
     """
     return Reference.of(original, samples=samples, seed=seed).compare(decoded, model)
 

@@ -44,16 +44,19 @@ def distance_summary(distances: Float64Array) -> dict[str, float]:
 
 
 def d1_psnr(directions: Iterable[Matches], peak: float) -> float:
-    """Point-to-point PSNR of MPEG PCC (Tian et al. 2017), dB, of the worse direction.
+    """Point-to-point PSNR (D1) of MPEG PCC (Tian et al. 2017), dB, of the worse direction.
 
     The counterpart of a point is the closest point of the whole other surface, so there is no
-    floor from the sampling density; `peak` is the bounding box's diagonal.
+    floor from the sampling density; `peak` is the bounding box's diagonal, normalized frame.
     """
     return min(psnr(float((each.offsets**2).sum(axis=1).mean()), peak) for each in directions)
 
 
 def d2_psnr(original: Surface, directions: Iterable[Matches], peak: float) -> float:
-    """Point-to-plane PSNR of MPEG PCC, dB, of the worse direction: along the original's normals."""
+    """Point-to-plane PSNR (D2) of MPEG PCC (Tian et al. 2017), dB, of the worse direction.
+
+    Offsets are taken along the original's face normals; `peak` as in `d1_psnr`.
+    """
     return min(psnr(float((_along(original, each) ** 2).mean()), peak) for each in directions)
 
 

@@ -12,9 +12,9 @@ DOWN = np.uint64(32)
 
 
 def opposite_faces(corners: Float64Array, normals: Float64Array) -> Int64Array:
-    """(m,): for each face another one with the same corners that looks the other way; -1 for none.
+    """(m,) int64: for each face another with the same corners that looks the other way, else -1.
 
-    corners (m, 3, 3), normals (m, 3).
+    corners (m, 3, 3) and unit normals (m, 3) of the faces; corners are compared by value.
     """
     codes = np.sort(_codes(corners), axis=1)
     order = np.lexsort(codes.T)

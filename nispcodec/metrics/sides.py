@@ -17,7 +17,10 @@ ACCURACY = 1.5
 
 @dataclass(frozen=True)
 class Sides:
-    """Of each point (n,) bool: hidden (inside on both sides) and sheet (inside on neither)."""
+    """Which of n points are hidden (inside on both sides), which on a sheet (inside on neither).
+
+    Both are (n,) bool.
+    """
 
     hidden: BoolArray
     sheet: BoolArray
@@ -29,9 +32,10 @@ class Sides:
 
 
 def sides_of(surface: Surface, points: SurfacePoints) -> Sides:
-    """Look PROBE off each point along the normal, both ways; outside is |winding number| <= 1/2.
+    """The sides of points on a surface, told by the winding number PROBE off along the normal.
 
-    Hidden walls, inside other bodies, cannot be held by a signed distance field.
+    Outside is |winding number| <= 1/2 (Jacobson et al. 2013). Hidden faces, inside other bodies,
+    cannot be held by a signed distance field.
     """
     import igl
 

@@ -37,7 +37,12 @@ def frame_of(mesh: TexturedMesh) -> Frame:
 
 @dataclass(frozen=True)
 class SurfacePoints:
-    """Points on a surface: faces (n,), barycentric weights (n, 3), positions (n, 3) normalized."""
+    """n points on a surface.
+
+    faces      (n,) int64, into the mesh's faces
+    weights    (n, 3) float64, barycentric
+    positions  (n, 3) float64, normalized frame
+    """
 
     faces: Int64Array
     weights: Float64Array
@@ -61,7 +66,7 @@ class SurfacePoints:
 class Surface:
     """A mesh with its positions (n, 3) in the normalized frame.
 
-    Raises MeshError, on first use, when no face has an area.
+    Raises MeshError in `sample` and `closest` when no face has an area.
     """
 
     mesh: TexturedMesh
@@ -74,12 +79,12 @@ class Surface:
 
     @cached_property
     def corners(self) -> Float64Array:
-        """(m, 3, 3): the corners of every face."""
+        """(m, 3, 3): the corners of every face, normalized frame."""
         return self.positions[self.mesh.faces]
 
     @cached_property
     def areas(self) -> Float64Array:
-        """(m,): the area of every face."""
+        """(m,): the area of every face, normalized frame."""
         lengths: Float64Array = np.linalg.norm(self._crosses, axis=1)
         return lengths / 2
 
@@ -95,7 +100,7 @@ class Surface:
 
     @cached_property
     def diagonal(self) -> float:
-        """Length of the bounding box's diagonal."""
+        """Length of the bounding box's diagonal, normalized frame."""
         return float(np.linalg.norm(np.ptp(self.corners.reshape(-1, 3), axis=0)))
 
     def sample(self, count: int, rng: np.random.Generator) -> SurfacePoints:
@@ -109,10 +114,10 @@ class Surface:
         return SurfacePoints(faces, weights, self.interpolate(faces, weights))
 
     def outlook(self, points: SurfacePoints) -> Float64Array:
-        """(n, 3): from where to look at another surface for what corresponds to some points.
+        """Positions (n, 3) from which to look for the counterparts of points on another surface.
 
-        From the points themselves; on two faces back to back from `BEFORE` in front of their own,
-        or one would see either side of what has a thickness there.
+        These are the points themselves; on one of two faces back to back they are `BEFORE` in front
+        of it, or the counterpart might lie on the wrong side of a surface that has a thickness.
         """
         doubled = np.flatnonzero(self.opposite_faces[points.faces] >= 0)
         positions = points.positions.copy()
@@ -140,7 +145,10 @@ class Surface:
         return weights / weights.sum(axis=1, keepdims=True)
 
     def facing(self, faces: Int64Array, towards: Float64Array) -> Int64Array:
-        """Faces (n,), or of two back to back the one met from its front in directions (n, 3)."""
+        """The faces (n,), or those back to back with them where these face the viewer.
+
+        `towards` (n, 3) are the directions in which one looks.
+        """
         opposite = self.opposite_faces[faces]
         behind = (self.normals[faces] * towards).sum(axis=1) > 0
         return np.where(behind & (opposite >= 0), opposite, faces)

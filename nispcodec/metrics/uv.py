@@ -10,7 +10,7 @@ from nispcodec.metrics.surface import Surface, SurfacePoints
 
 
 def uv_at(surface: Surface, points: SurfacePoints) -> Float64Array:
-    """(n, 2): interpolated UVs, origin bottom-left; (0, 0) where the face has none."""
+    """(n, 2): UVs at points of a surface, origin bottom-left; (0, 0) where the face has none."""
     uvs: Float64Array = np.einsum(
         "nk,nkd->nd", points.weights, surface.mesh.corner_uvs[points.faces]
     )
@@ -18,7 +18,7 @@ def uv_at(surface: Surface, points: SurfacePoints) -> Float64Array:
 
 
 def uv_errors(original: Surface, decoded: Surface, matches: Matches) -> Float64Array:
-    """(k,): Euclidean |delta uv| of the pairs whose original face has UVs."""
+    """(k,): Euclidean distances in UV of those pairs whose original face has UVs."""
     textured = original.mesh.has_uv[matches.original.faces]
     first = uv_at(original, matches.original[textured])
     second = uv_at(decoded, matches.decoded[textured])

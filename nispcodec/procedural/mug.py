@@ -23,7 +23,7 @@ class Rectangle:
     high: tuple[float, float]
 
     def place(self, unit: Float64Array) -> Float64Array:
-        """(..., 2) in [0, 1]^2 -> UV."""
+        """Points (..., 2) of [0, 1]^2 -> UVs in the region."""
         low = np.array(self.low)
         placed: Float64Array = low + unit * (np.array(self.high) - low)
         return placed
@@ -33,8 +33,8 @@ class Rectangle:
 class Span:
     """A stretch of a lathe's profile that becomes one chart.
 
-    `control` holds (radius, height) points, rounded off between the ends. The chart is a disc when
-    the span starts or ends on the axis, else a band.
+    `control` holds (radius, height) points in centimeters, whose corners are cut `rounds` times
+    between the ends. The chart is a disc when the span starts or ends on the axis, else a band.
     """
 
     control: Sequence[tuple[float, float]]
@@ -55,7 +55,7 @@ class Sheet:
 
 @dataclass(frozen=True)
 class Body:
-    """A closed surface of sheets over common positions."""
+    """A closed surface: sheets over common positions (n, 3), of one material."""
 
     positions: Float64Array
     sheets: Sequence[Sheet]

@@ -15,7 +15,7 @@ CREAM, COBALT, RUST = (0.93, 0.88, 0.78), (0.13, 0.24, 0.5), (0.68, 0.33, 0.18)
 
 
 def glaze_texture() -> Texture:
-    """Cream with painted bands on the wall of the mug (upper half), a blue handle below."""
+    """The mug's base color: cream with painted bands on the wall, a blue handle below."""
     u, v = _grid()
     picture = np.array(CREAM) * (0.97 + 0.03 * _speckle(u, v)[..., None])
     # The wall spans u 0.02 to 0.98 and v 0.5 to 0.98; whole waves close at the seam.
@@ -33,7 +33,7 @@ def glaze_texture() -> Texture:
 
 
 def wood_textures() -> tuple[Texture, Texture]:
-    """Base color and normal map of a plank cut across its rings."""
+    """The saucer's base color and normal map: a plank cut across its rings."""
     u, v = _grid()
     bent = u + 0.03 * np.sin(2 * np.pi * (v * 1.3 + 0.2)) + 0.012 * np.sin(2 * np.pi * 3.1 * v)
     rings = 0.5 + 0.5 * np.sin(2 * np.pi * 15 * (bent + 0.05 * bent**2))

@@ -24,7 +24,7 @@ ROOM = 1.02
 
 @dataclass(frozen=True)
 class Camera:
-    """Looks at `target` from where the unit ball around it just fits into the picture; y is up.
+    """A pinhole camera that looks at `target` from where the unit ball just fits in; y is up.
 
     azimuth    degrees around y: 0 from +z (the front of a glTF asset), 90 from +x
     elevation  degrees above the horizon, -90 to 90
@@ -49,7 +49,7 @@ class Camera:
 
     @property
     def eye(self) -> Float64Array:
-        """(3,): where the camera stands."""
+        """(3,): where the camera stands, normalized frame."""
         distance = ROOM / np.sin(np.radians(self.fov) / 2)
         return np.asarray(self.target) + distance * self.axes[2]
 
@@ -59,7 +59,7 @@ class Camera:
         return float(np.tan(np.radians(self.fov) / 2)) / self.zoom
 
     def directions(self, x: FloatArray, y: FloatArray) -> Float32Array:
-        """Unit directions (n, 3) through points (n,), (n,) of the picture.
+        """Unit directions (n, 3) float32 from the eye through points x (n,), y (n,) of the picture.
 
         (0, 0) is its top left corner, (1, 1) its bottom right.
         """
@@ -68,13 +68,16 @@ class Camera:
         return (rays / np.linalg.norm(rays, axis=1, keepdims=True)).astype(np.float32)
 
     def places(self, points: FloatArray) -> Float64Array:
-        """Where points (n, 3) before the camera are in the picture (n, 2): see `directions`."""
+        """Places (n, 2) in the picture, see `directions`, of points (n, 3) in front of the eye."""
         right, up, backward = self.axes @ (points - self.eye).T
         return 0.5 + 0.5 * np.column_stack([right, -up]) / (-backward * self.half_width)[:, None]
 
 
 def view(text: str, fov: float = 32.0) -> Camera:
-    """The camera of "front", "back", "left", "right", "top", "bottom" or "azimuth,elevation"."""
+    """The camera of "front", "back", "left", "right", "top", "bottom" or "azimuth,elevation".
+
+    All angles are in degrees. Raises QueryError for another text.
+    """
     if text in NAMED:
         return Camera(*NAMED[text], fov)
     try:
@@ -90,5 +93,5 @@ def view(text: str, fov: float = 32.0) -> Camera:
 def turntable(
     count: int, elevation: float = 20.0, fov: float = 32.0, start: float = 30.0
 ) -> list[Camera]:
-    """`count` cameras evenly around the y axis."""
+    """`count` cameras evenly around the y axis, the first at azimuth `start`; angles in degrees."""
     return [Camera(start + 360.0 * i / count, elevation, fov) for i in range(count)]

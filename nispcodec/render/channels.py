@@ -1,4 +1,4 @@
-"""What a picture can show besides light: one function a channel, from samples to colors."""
+"""Channels that a picture can show besides light: a function for each, from samples to colors."""
 
 from __future__ import annotations
 
@@ -16,9 +16,10 @@ GOLDEN = 0.618034
 
 
 def channel_picture(eye: Eye, channel: str) -> Float32Array:
-    """(size, size, 4) float32 in [0, 1] of a channel of `CHANNELS`; raises QueryError otherwise.
+    """A channel of `CHANNELS` as a picture (size, size, 4) float32 RGBA in [0, 1], top row first.
 
     "color" is what the eye sees. The others have one sample a pixel, as they are no light to mix.
+    Raises QueryError for another channel.
     """
     if channel == "color":
         return eye.picture()

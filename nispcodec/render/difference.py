@@ -19,13 +19,13 @@ WINDOW = 0.04
 
 
 def difference(first: Float32Array, second: Float32Array) -> Float32Array:
-    """(h, w) float32: the largest difference of a channel of two pictures (h, w, 3)."""
+    """(h, w) float32: the largest difference over the channels of two pictures (h, w, 3)."""
     largest: Float32Array = np.abs(first - second).max(axis=2)
     return largest
 
 
 def heat(values: Float32Array) -> Float32Array:
-    """(..., 3) float32 for values (...): white at 0, through yellow and red to black at SCALE."""
+    """Values (...) as colors (..., 3) float32: white at 0, yellow, red, black from SCALE on."""
     share = values[..., None] / SCALE
     colors: Float32Array = 1 - np.clip(3 * share - np.array([2, 1, 0]), 0, 1)
     return colors.astype(np.float32)
@@ -34,7 +34,11 @@ def heat(values: Float32Array) -> Float32Array:
 def close_ups(
     scene: Scene, views: list[Camera], differences: list[Float32Array], count: int
 ) -> list[Camera]:
-    """Cameras on the places of largest difference, each well away from the others."""
+    """`count` cameras close to where differences are largest, each well away from the others.
+
+    `differences` are those (size, size) of the pictures from each of the `views`. The scene tells
+    how far away the surface is.
+    """
     smooth = [uniform_filter(each, max(3, round(WINDOW * len(each)))) for each in differences]
     cameras: list[Camera] = []
     for _ in range(count):

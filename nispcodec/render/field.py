@@ -23,7 +23,7 @@ OPENING = Material("opening", base_color=(0.0, 0.0, 0.0, 0.0), alpha_mode="mask"
 
 
 class FieldScene:
-    """The networks of a model as a scene."""
+    """The networks of a model as a scene; making one evaluates the field on a grid."""
 
     def __init__(self, model: NispModel) -> None:
         self.model = model
@@ -32,17 +32,17 @@ class FieldScene:
 
     @property
     def frame(self) -> Frame:
-        """The document's."""
+        """The document's frame."""
         return self.model.document.frame
 
     @property
     def materials(self) -> tuple[Material, ...]:
-        """The document's, and one more for its openings."""
+        """The document's materials, and one more that is invisible, for its openings."""
         return (*self.model.document.materials, OPENING)
 
     @property
     def textures(self) -> tuple[Texture, ...]:
-        """The document's."""
+        """The document's textures."""
         return self.model.document.textures
 
     def _materials_of_charts(self) -> Int32Array:
@@ -54,7 +54,7 @@ class FieldScene:
         return materials
 
     def cast(self, origins: Float32Array, directions: Float32Array, layer: int = 0) -> Cast:
-        """See `Scene.cast`."""
+        """Cast rays (n, 3), (n, 3) by sphere tracing; see `Scene.cast`."""
         sdf = self.model.document.sdf
         trace = March(sdf, self.space, origins, directions, inside=layer % 2 == 1).run()
         rays = np.flatnonzero(np.isfinite(trace.distances))

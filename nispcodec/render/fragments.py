@@ -1,4 +1,4 @@
-"""What a ray finds on a surface: everything that shading wants to know, whatever was hit."""
+"""Fragments: everything that shading wants to know of the points that rays hit."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ class Fragments:
     facing     (n,) bool: seen from outside
     uvs        (n, 2) float32
     jacobians  (n, 2, 3) float32: how u and v change along x, y, z within the surface
-    materials  (n,) int32
+    materials  (n,) int32, into the scene's materials
     textured   (n,) bool: has UVs
     charts     (n,) int32; -1 where the surface does not say
     """
@@ -44,8 +44,11 @@ class Fragments:
 
 @dataclass(frozen=True)
 class Cast:
-    """What became of n rays: fragments of those that hit, how often the field was asked for each
-    ray (n,), and which were given up (n,) before they hit or left.
+    """The result of casting n rays.
+
+    fragments  where rays hit the surface
+    steps      (n,) int32: how often the field was evaluated for each ray
+    lost       (n,) bool: rays that were given up before they hit or left
     """
 
     fragments: Fragments
@@ -62,14 +65,15 @@ class Scene(Protocol):
 
     @property
     def materials(self) -> tuple[Material, ...]:
-        """What the fragments' materials index."""
+        """The materials that fragments refer to."""
 
     @property
     def textures(self) -> tuple[Texture, ...]:
-        """What the materials' maps index."""
+        """The textures that the materials' maps refer to."""
 
     def cast(self, origins: Float32Array, directions: Float32Array, layer: int) -> Cast:
-        """Where rays (n, 3), of unit directions, first cross the surface.
+        """Where rays with origins (n, 3) and unit directions (n, 3) first cross the surface.
 
-        `layer` counts the crossings behind the origins: 0 for rays that come from the camera.
+        Normalized frame. `layer` counts the crossings behind the origins: 0 for rays that come from
+        the camera.
         """

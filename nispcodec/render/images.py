@@ -18,10 +18,11 @@ TURN_SECONDS = 4.0
 
 
 def image_bytes(pictures: Sequence[Float32Array], suffix: str) -> bytes:
-    """An image file of one of SUFFIXES: animated, one turn in TURN_SECONDS, when it is of many.
+    """The bytes of an image file of the format `suffix`, one of SUFFIXES.
 
-    Pictures are (h, w, 3) or (h, w, 4) float in [0, 1], sRGB-encoded. GIF knows no half
-    transparency: its pictures stand on white.
+    Pictures are (h, w, 3) or (h, w, 4) float in [0, 1], sRGB-encoded, alpha straight; several make
+    an animation that lasts TURN_SECONDS and repeats. GIF knows no half transparency: its pictures
+    stand on white.
     """
     frames = [_image(picture, opaque=suffix == ".gif") for picture in pictures]
     lossless = {"lossless": True} if suffix == ".webp" else {}

@@ -22,8 +22,10 @@ def layouts(
 ) -> tuple[Float32Array, Float32Array, Float32Array]:
     """The UV layouts of both (size, size, 3), and the distance between them (size, size).
 
-    Of points of the original that are not hidden inside of it. A point has the color of its
-    original UV in both: what is misplaced stands out. The distance is shown at the original UV.
+    All are float32, top row first. They show points of the original that are not hidden inside of
+    it. A point has the color of its original UV in both: misplaced points stand out. The distance
+    is in UV and shown at the original UV. The meshes are in the world frame; `frame` is the
+    original's. Raises MeshError when a mesh has no surface.
     """
     surface = Surface.of(original, frame)
     points = _spread_over_uv(surface)

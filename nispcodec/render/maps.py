@@ -27,7 +27,8 @@ class Maps:
         """Texels (n, 4) float32 of a slot, linear, or None when the material has none there.
 
         `footprints` (n,) is the length in the normalized frame that one sample of the picture
-        spans: the image is taken at the size at which a texel covers as much.
+        spans: the image is taken at the size at which a texel covers as much (trilinear filtering,
+        Williams 1983). Raises MeshError for a texture that does not decode.
         """
         used = material.maps.get(slot)
         if used is None:

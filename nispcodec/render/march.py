@@ -32,7 +32,12 @@ TRACED_BALL = BALL + 0.06
 
 @dataclass(frozen=True)
 class Trace:
-    """Of n rays: distance to the hit, infinite without (n,); evaluations (n,); given up (n,)."""
+    """The result of marching n rays.
+
+    distances  (n,) float32 to the hit along each ray, infinite without one
+    steps      (n,) int32: how often the network was evaluated
+    lost       (n,) bool: rays that were given up
+    """
 
     distances: Float32Array
     steps: Int32Array
@@ -56,7 +61,11 @@ class _Front:
 
 
 class March:
-    """Rays (n, 3), (n, 3) through a field, from outside its surface or from `inside`."""
+    """Rays through a field, from outside its surface or from `inside`.
+
+    Origins (n, 3) and unit directions (n, 3) are in the normalized frame; `space` is that of the
+    network.
+    """
 
     def __init__(
         self,
@@ -74,7 +83,7 @@ class March:
         self._steps = np.zeros(len(origins), np.int32)
 
     def run(self) -> Trace:
-        """First crossings of the surface."""
+        """March until all rays have crossed the surface, left the ball or taken MAX_STEPS."""
         found: list[tuple[_Front, Float32Array]] = []
         lost = np.zeros(len(self._steps), np.bool_)
         front, leave = self._into_ball()

@@ -12,7 +12,7 @@ CREASE = 45.0
 
 
 def corner_normals(surface: Surface) -> Float64Array:
-    """(m, 3, 3): a normal, not of unit length, for each corner of each face.
+    """(m, 3, 3): a normal, not of unit length, for each corner of each face, normalized frame.
 
     The sum, weighted by area, of the normals of those faces at the corner's position that lean
     away from the corner's own face by less than CREASE. Positions that coincide are one.

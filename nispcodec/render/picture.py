@@ -31,7 +31,7 @@ LAMP = (-0.5, 0.6, 1.0)
 
 @dataclass(frozen=True)
 class Samples:
-    """What n rays saw.
+    """The colors that n rays see, and the first surface that each of them meets.
 
     color      (n, 4) float32, linear light, premultiplied with alpha
     distances  (n,) float32 to the first surface that is seen, infinite without; the next three are
@@ -52,12 +52,12 @@ class Samples:
     lost: BoolArray
 
     def part(self, chosen: slice) -> Samples:
-        """Some of the rays; what is written there is written here."""
+        """A view of some of the rays: writing to it changes these samples."""
         return Samples(*(getattr(self, field.name)[chosen] for field in fields(self)))
 
     @classmethod
     def nothing(cls, count: int) -> Samples:
-        """Rays that have met nothing yet."""
+        """Samples of `count` rays that have met nothing yet."""
         return cls(
             color=np.zeros((count, 4), np.float32),
             distances=np.full(count, np.inf, np.float32),
@@ -70,7 +70,11 @@ class Samples:
 
 
 class Eye:
-    """One scene seen by one camera, at a size in pixels."""
+    """One scene seen by one camera, in a picture of `size` x `size` pixels.
+
+    `maps` are the scene's textures; without `normal_map` normal maps are not applied.
+    Raises MeshError, when it looks, for a texture that does not decode.
+    """
 
     def __init__(
         self, scene: Scene, maps: Maps, camera: Camera, size: int, normal_map: bool = True
@@ -81,7 +85,10 @@ class Eye:
         self._lamp: Float32Array = (lamp / np.linalg.norm(lamp)).astype(np.float32)
 
     def picture(self) -> Float32Array:
-        """(size, size, 4) float32: RGB sRGB-encoded, alpha straight; edges are antialiased."""
+        """The picture (size, size, 4) float32 in [0, 1], top row first, edges antialiased.
+
+        RGB is sRGB-encoded, alpha straight.
+        """
         first = self.pixels()
         color = first.color
         edges = np.flatnonzero(self._edges(first))
@@ -99,7 +106,7 @@ class Eye:
         return self.see(x.ravel(), y.ravel())
 
     def see(self, x: FloatArray, y: FloatArray, samples: int = 1) -> Samples:
-        """What is seen through points (n,), (n,), in pixels from the top left.
+        """The samples through points x (n,), y (n,) of the picture, in pixels from its top left.
 
         A pixel has `samples` of them along each side: textures are filtered accordingly.
         """

@@ -14,7 +14,11 @@ from nispcodec.render.normals import corner_normals
 
 
 class MeshScene:
-    """A mesh, placed by `frame`: its own, or the original's when it is compared with one."""
+    """A mesh in the world frame as a scene, placed by `frame`.
+
+    That is the mesh's own by default, or the original's when it is compared with one. Raises
+    MeshError for a mesh without a surface.
+    """
 
     def __init__(self, mesh: TexturedMesh, frame: Frame | None = None) -> None:
         from embreex.mesh_construction import TriangleMesh
@@ -40,7 +44,7 @@ class MeshScene:
         return self.surface.mesh.textures
 
     def cast(self, origins: Float32Array, directions: Float32Array, layer: int = 0) -> Cast:
-        """See `Scene.cast`."""
+        """Cast rays (n, 3), (n, 3) at the triangles; see `Scene.cast`."""
         found = self._embree.run(origins, directions, output=True)
         rays = np.flatnonzero(found["primID"] >= 0)
         u, v = found["u"][rays].astype(np.float64), found["v"][rays].astype(np.float64)
@@ -84,7 +88,7 @@ class MeshScene:
 
 
 def face_jacobians(surface: Surface) -> Float32Array:
-    """(m, 2, 3): how the UV of each face changes along x, y, z in its plane."""
+    """(m, 2, 3) float32: how u and v of each face change along x, y, z in its plane."""
     corners, uvs = surface.corners, surface.mesh.corner_uvs
     edges = corners[:, 1:] - corners[:, :1]
     uv_edges = uvs[:, 1:] - uvs[:, :1]

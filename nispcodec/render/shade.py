@@ -1,4 +1,4 @@
-"""The one shader: what light a point of a surface sends to the eye, whatever it was found with.
+"""The one shader: the light that a point of a surface sends to the eye, however it was found.
 
 Lambert and normalized Blinn-Phong under one lamp, and an even environment; metallic-roughness
 materials as in glTF 2.0; all in linear light.
@@ -26,7 +26,12 @@ SMOOTHEST = 0.1
 
 @dataclass(frozen=True)
 class Look:
-    """The material at n points, linear: base (n, 3), emissive (n, 3), normals (n, 3), else (n,)."""
+    """The material at n points, float32, in linear light.
+
+    base, emissive                          (n, 3)
+    normals                                 (n, 3) unit, towards the viewer, normal map applied
+    alpha, metallic, roughness, occlusion   (n,)
+    """
 
     base: Float32Array
     alpha: Float32Array
@@ -44,9 +49,10 @@ def looks(
     footprints: Float32Array,
     normal_map: bool = True,
 ) -> Iterator[tuple[BoolArray, Look]]:
-    """The points' looks, material by material: which points (n,) bool, and what they are made of.
+    """The looks of n points, material by material: which points (n,) bool, and their look.
 
-    `footprints` (n,): see `Maps.look_up`. Normals point to the side from which a point is seen.
+    `footprints` (n,): see `Maps.look_up`. Without `normal_map` normal maps are not applied. Raises
+    MeshError for a texture that does not decode.
     """
     keys = 2 * points.materials + points.textured
     for key in np.unique(keys).tolist():
@@ -58,7 +64,10 @@ def looks(
 
 
 def shaded(look: Look, towards: Float32Array, lamp: Float32Array) -> Float32Array:
-    """(n, 3) linear light of points seen along unit directions (n, 3), lit from direction (3,)."""
+    """(n, 3) float32: linear light of points seen along unit directions `towards` (n, 3).
+
+    `lamp` (3,) is the unit direction to the lamp.
+    """
     incident = np.clip(look.normals @ lamp, 0, 1)[:, None]
     middle = lamp - towards
     middle /= np.maximum(np.linalg.norm(middle, axis=1, keepdims=True), 1e-6)

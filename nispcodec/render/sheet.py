@@ -27,7 +27,7 @@ BLACK, GRAY = (0, 0, 0), (110, 110, 110)
 
 @dataclass(frozen=True)
 class Sheet:
-    """The finished page (h, w, 3) float32 in [0, 1], and the numbers that stand on it."""
+    """The finished page (h, w, 3) float32 in [0, 1], sRGB-encoded, and the numbers on it."""
 
     picture: Float32Array
     report: Report
@@ -45,7 +45,8 @@ def sheet(
     Every picture is `size` pixels wide. Both are drawn by the same camera, lamp and shader: a model
     is sphere-traced, a mesh is hit by rays. To their right are the UV layouts. On top stand the
     title and the numbers: PSNR and SSIM of the VIEWS; distance, UV and color of the decoded mesh
-    as in `nispcodec.metrics.compare`. Raises MeshError for an original without a surface.
+    as in `nispcodec.metrics.compare`. Raises MeshError for a mesh without a surface and for a
+    texture that does not decode.
     """
     frame = frame_of(original)
     scenes = scene_of(original, frame), scene_of(decoded, frame)

@@ -28,7 +28,7 @@ CAUTION, LEAST_DOUBT = 2.0, 5e-4
 
 @dataclass(frozen=True)
 class Space:
-    """What is known of a field over the cube [-1.02, 1.02]^3: how far its surface is, signed.
+    """Bounds of a field over the cube [-CUBE, CUBE]^3: how far its surface is at least, signed.
 
     Distances are negative inside. `above` and `below` are (r, r, r) float32, for the points of a
     grid and to be interpolated; `cells` (r - 1, r - 1, r - 1) float32, for all points of a cell.
@@ -69,10 +69,10 @@ def _between(grid: Float32Array, place: Float32Array) -> Float32Array:
 
 
 def bounding_space(network: Network, half_thickness: float = 0.0) -> Space:
-    """What can be known beforehand of where the surface of an SDF network is not.
+    """Bounds, found beforehand, on where the surface of an SDF network may be.
 
-    `half_thickness` is the document's. Noise is what the mesh of a plain decode has none of: on
-    coarser ones thin parts break into pieces that look like noise.
+    `half_thickness` is the document's, normalized frame. Noise is recognized on the mesh of a plain
+    decode: on coarser ones thin parts break into pieces that look like noise.
     """
     cells, count = np.indices((COARSE,) * 3).reshape(3, -1).T, COARSE
     middles, cells = _crossed(network, cells, count)

@@ -8,9 +8,9 @@ from nispcodec.core.arrays import Float32Array
 
 
 def tangent_axes(normals: Float32Array) -> tuple[Float32Array, Float32Array]:
-    """Two unit vectors (n, 3) each that complete the normals to a right-handed frame.
+    """Two arrays of unit vectors (n, 3) that complete unit normals (n, 3) to right-handed frames.
 
-    Duff et al., Building an Orthonormal Basis, Revisited, 2017.
+    Duff et al., "Building an Orthonormal Basis, Revisited", 2017.
     """
     x, y, z = normals.T
     sign = np.copysign(np.float32(1), z)
@@ -24,7 +24,7 @@ def tangent_axes(normals: Float32Array) -> tuple[Float32Array, Float32Array]:
 def tangent_frames(
     normals: Float32Array, jacobians: Float32Array
 ) -> tuple[Float32Array, Float32Array]:
-    """Tangents and bitangents (n, 3), unit, at right angles to the normals and to each other.
+    """Tangents and bitangents (n, 3), unit, at right angles to unit normals and to each other.
 
     As glTF has them (and MikkTSpace): the tangent is the direction in which u grows while v stays,
     made perpendicular to the normal; the bitangent is on the side where v grows, so that mirrored

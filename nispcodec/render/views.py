@@ -22,7 +22,8 @@ def scene_of(asset: NispModel | TexturedMesh | Scene, frame: Frame | None = None
     """Something to render: a model is sphere-traced, a mesh is hit by rays.
 
     `frame` places a mesh: that of the original, when the mesh is compared with it; by default its
-    own. Making a scene takes time: keep it for several pictures.
+    own. Making a scene takes time: keep it for several pictures. Raises MeshError for a mesh
+    without a surface.
     """
     if isinstance(asset, NispModel):
         return FieldScene(asset)
@@ -38,7 +39,8 @@ def render_views(
 ) -> list[Float32Array]:
     """One picture a view: (size, size, 4) float32 in [0, 1], sRGB-encoded RGB, straight alpha.
 
-    Top row first; transparent where nothing is hit. `frame`: see `scene_of`.
+    Top row first; transparent where nothing is hit. `frame`: see `scene_of`. Raises MeshError for a
+    mesh without a surface and for a texture that does not decode.
     """
     scene = scene_of(asset, frame)
     maps = Maps(scene.textures)
@@ -46,7 +48,7 @@ def render_views(
 
 
 def on_white(picture: Float32Array) -> Float32Array:
-    """(h, w, 3): the picture on a white ground, mixed as image viewers do."""
+    """(h, w, 3) float32: a picture (h, w, 4) on white, mixed in sRGB as image viewers do."""
     alpha = picture[..., 3:]
     mixed: Float32Array = (picture[..., :3] * alpha + (1 - alpha)).astype(np.float32)
     return mixed

@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 
 @dataclass(frozen=True)
 class LossConfig:
-    """What the networks minimize, and how errors and curvatures are taken.
+    """The losses of the networks, and how errors and curvatures are taken.
 
     near              distances well below this count in full in the relative loss of the SDF
     sign_weight       of the logistic loss of the sign; below 2 the loss is least where the field is

@@ -1,4 +1,4 @@
-"""What a network minimizes, what says how good it is, and what rounding its weights costs.
+"""Objectives: a network's loss, the error that judges it, and the cost of rounding its weights.
 
 The three belong together: an `Objective` is one value, so that none can be forgotten.
 """

@@ -16,7 +16,7 @@ from nispcodec.train.task import Quantization, Schedule, Task
 
 @dataclass(frozen=True)
 class AssetProblem:
-    """What the networks of an asset are asked for.
+    """Everything about an asset that the tasks of its networks depend on.
 
     charts     labels, an opening's included
     has_uv     whether any chart has UVs

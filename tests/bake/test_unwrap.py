@@ -25,7 +25,7 @@ def cube(tmp_path: Path) -> TexturedMesh:
     return load_obj(tmp_path, CUBE, a_mtl=MTL, w_png=image())
 
 
-def test_every_face_gets_uvs_and_keeps_the_rest(cube: TexturedMesh):
+def test_every_face_gets_uvs_and_keeps_the_rest(cube: TexturedMesh) -> None:
     pytest.importorskip("xatlas")
     made = unwrap(cube)
     assert made.has_uv.all()
@@ -37,7 +37,7 @@ def test_every_face_gets_uvs_and_keeps_the_rest(cube: TexturedMesh):
     assert 2 <= len(split_charts(made)) <= 6
 
 
-def test_textures_of_the_old_atlas_go_with_a_warning(cube: TexturedMesh):
+def test_textures_of_the_old_atlas_go_with_a_warning(cube: TexturedMesh) -> None:
     pytest.importorskip("xatlas")
     made = unwrap(cube)
     assert made.textures == ()
@@ -47,7 +47,7 @@ def test_textures_of_the_old_atlas_go_with_a_warning(cube: TexturedMesh):
 
 def test_without_xatlas_the_error_says_what_to_install(
     cube: TexturedMesh, monkeypatch: pytest.MonkeyPatch
-):
+) -> None:
     monkeypatch.setitem(sys.modules, "xatlas", None)
     with pytest.raises(MeshError, match=r"pip install 'nispcodec\[unwrap\]'"):
         unwrap(cube)

@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -55,7 +56,7 @@ def test_what_comes_back_is_as_close_as_the_bits_allow(name: str, source: Source
         pytest.skip(str(why))  # The adapter names the tool that this machine lacks.
     decoded = coder.decode(data, source)
     assert decoded.materials == source.mesh.materials
-    report = source.reference.compare(decoded)
+    report: dict[str, Any] = source.reference.compare(decoded)
     assert report["geometry"]["larger"]["mean"] <= distance
     assert report["uv"]["larger"]["mean"] <= uv
 
@@ -71,10 +72,8 @@ def test_several_materials_survive_draco(source: Source) -> None:
 def test_more_bits_cost_more_and_lose_less(source: Source) -> None:
     draco = codec("draco")
     files = [draco.encode(source, {"qp": bits, "qt": bits}) for bits in (8, 10, 12)]
-    errors = [
-        source.reference.compare(draco.decode(data, source))["geometry"]["larger"]["mean"]
-        for data in files
-    ]
+    reports: list[Any] = [source.reference.compare(draco.decode(data, source)) for data in files]
+    errors = [report["geometry"]["larger"]["mean"] for report in reports]
     assert len(files[0]) < len(files[1]) < len(files[2])
     assert errors[0] > errors[1] > errors[2]
 
@@ -89,7 +88,7 @@ def test_simplification_reaches_the_asked_count_on_the_given_vertices(source: So
 
 
 def test_gltfpack_tells_when_it_is_missing(source: Source, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(gltfpack.shutil, "which", lambda name: None)
+    monkeypatch.setattr("shutil.which", lambda name: None)
     monkeypatch.setattr(gltfpack, "LOCAL", Path("nowhere"))
     with pytest.raises(Unavailable, match="npm install gltfpack"):
         gltfpack.settings(source, quick=False)
@@ -106,7 +105,7 @@ def test_a_quick_run_has_fewer_settings(name: str, source: Source) -> None:
 
 def test_simplified_to_nothing_is_an_error_that_says_so(source: Source) -> None:
     pytest.importorskip("meshoptimizer", reason="extra `simplify`")
-    setting = {"surface": "all", "kept": 0.0, "qp": 11, "qt": 10}
+    setting: Setting = {"surface": "all", "kept": 0.0, "qp": 11, "qt": 10}
     with pytest.raises(ValueError, match="found none left"):
         codec("simplified_draco").encode(source, setting)
 

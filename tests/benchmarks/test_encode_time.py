@@ -15,6 +15,7 @@ from benchmarks.headline.encode_time_table import mean, ratio, summary, tables, 
 from benchmarks.headline.encode_time_turn import Turn, picked, turns
 from benchmarks.measuring.build import build_at
 from benchmarks.measuring.process import run
+from benchmarks.measuring.result_file import Record
 from nispcodec.io.save import write_mesh
 from tests.metrics.shapes import sphere
 
@@ -196,7 +197,9 @@ def test_assets_are_those_asked_for_or_the_eight_or_all(tmp_path: Path) -> None:
         chosen(tmp_path, ["mug"])
 
 
-def runs_of(asset: str, preset: str, old: list[float], new: list[float], seed: int = 0) -> list:
+def runs_of(
+    asset: str, preset: str, old: list[float], new: list[float], seed: int = 0
+) -> list[Record]:
     """Runs with these seconds, one a round; the new build's errors are half of the old one's."""
     where = {"asset": asset, "preset": preset, "seed": seed}
     return [

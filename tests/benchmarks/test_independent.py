@@ -5,6 +5,7 @@ from __future__ import annotations
 import zipfile
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import click
 import numpy as np
@@ -25,7 +26,9 @@ def test_closest_points_of_a_triangle_in_every_region() -> None:
     points = np.array(
         [[0.2, 0.2, 3], [-1, -1, 0], [0.5, -2, 1], [2, -0.1, 0], [1, 1, 0], [-1, 0.5, 0]]
     )
-    wanted = [[0.2, 0.2, 0], [0, 0, 0], [0.5, 0, 0], [1, 0, 0], [0.5, 0.5, 0], [0, 0.5, 0]]
+    wanted = np.array(
+        [[0.2, 0.2, 0], [0, 0, 0], [0.5, 0, 0], [1, 0, 0], [0.5, 0.5, 0], [0, 0.5, 0]]
+    )
     found = cross_check.closest(points, np.repeat(triangle[None], len(points), axis=0))
     assert np.allclose(found, wanted)
 
@@ -46,7 +49,8 @@ def test_two_charts_that_swapped_places_are_caught() -> None:
     uvs = np.vstack([0.5 * whole.uvs[:half], 0.5 * whole.uvs[half:] + [0.5, 0]])
     original = replace(whole, uvs=uvs)
     swapped = replace(whole, uvs=np.roll(uvs, half, axis=0))
-    assert compare(original, swapped, samples=2000)["uv"]["larger"]["median"] == pytest.approx(0.5)
+    report: dict[str, Any] = compare(original, swapped, samples=2000)
+    assert report["uv"]["larger"]["median"] == pytest.approx(0.5)
 
 
 def test_subdivision_keeps_uvs_on_their_corners() -> None:
@@ -73,9 +77,11 @@ def test_assets_come_out_of_the_wheel_with_a_material(tmp_path: Path) -> None:
     assert mesh.materials[0].maps["base_color"].texture == 0
 
 
-def test_another_wheel_than_expected_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+def test_another_wheel_than_expected_is_refused(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     (tmp_path / "reachy.whl").write_bytes(b"not it")
     done = type("Done", (), {"returncode": 0, "stderr": ""})
-    monkeypatch.setattr(fetch.subprocess, "run", lambda *_, **__: done)
+    monkeypatch.setattr("subprocess.run", lambda *_, **__: done)
     with pytest.raises(click.ClickException, match="expected SHA-256"):
         fetch.download(tmp_path)

@@ -11,6 +11,7 @@ from benchmarks.headline import main_job
 from benchmarks.headline.main_job import main, table, targets
 from benchmarks.measuring.machine import commit, machine, versions
 from benchmarks.measuring.process import run
+from benchmarks.measuring.result_file import Record
 from benchmarks.measuring.target import Target
 
 RECORD = {
@@ -62,13 +63,15 @@ def test_table_marks_what_is_missed_and_what_failed() -> None:
     assert "FAILED: RuntimeError: no" in lines[-1]
 
 
-def test_one_failure_does_not_stop_the_rest_and_results_are_kept(tmp_path: Path, monkeypatch):
+def test_one_failure_does_not_stop_the_rest_and_results_are_kept(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     for name in ("alpha", "beta"):
         (tmp_path / name).mkdir()
         (tmp_path / name / f"{name}.obj").write_text("")
     seen = []
 
-    def measure(source: Path, folder: Path, preset: str, seed: int):
+    def measure(source: Path, folder: Path, preset: str, seed: int) -> Record:
         seen.append(source.stem)
         if source.stem == "alpha" and len(seen) == 1:
             raise RuntimeError("no luck")
@@ -88,6 +91,6 @@ def test_one_failure_does_not_stop_the_rest_and_results_are_kept(tmp_path: Path,
 
 
 def test_machine_is_described() -> None:
-    assert machine()["cores"] >= 1
+    assert int(machine()["cores"]) >= 1
     assert "torch" in versions()
     assert commit()

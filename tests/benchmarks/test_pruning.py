@@ -7,15 +7,16 @@ from pathlib import Path
 
 import pytest
 
+from benchmarks.measuring.result_file import Record
 from benchmarks.paper.pruning_figure import draw, holding, tables
 from benchmarks.paper.pruning_published import PUBLISHED, RATES, SIZED, SIZES
 from benchmarks.studies.pruning_or_quantizing import against_quantized, table
 
 
-def series() -> dict[str, object]:
+def series() -> Record:
     """Made-up rounds of one asset and strategy, with sizes where the table wants them."""
     rates = [0.0, *RATES]
-    rounds = {
+    rounds: dict[str, list[Record]] = {
         name: [
             {"rate": rate, "quality": 0.9 - rate / 2 if name == "chart" else 1e-3 * (1 + rate)}
             for rate in rates
@@ -56,7 +57,7 @@ def test_the_tables_name_what_was_measured() -> None:
     assert "| uv, 64.4% pruned, published (.npz) | 129.1 | 71.3 | 71.4 | 71.4 | 73.4 |" in text
 
 
-def case() -> dict[str, object]:
+def case() -> Record:
     """Quantizing alone halves the bytes for a tenth more error each time."""
     settings = [
         (0.0, 0.0, 1.0, 4000, 1.0),

@@ -25,7 +25,9 @@ def fitted() -> Network:
         Schedule(40, 256),
         Quantization(1e-3),
     )
-    return fitting.fit_networks([task], 0, "cpu", 1, silent)["sdf"]
+    # As the encoder finds it: the benchmark puts another in its place.
+    fit = vars(fitting)["fit_networks"]
+    return fit([task], 0, "cpu", 1, silent)["sdf"]
 
 
 def test_floats_are_what_the_same_fit_rounds() -> None:
@@ -34,8 +36,8 @@ def test_floats_are_what_the_same_fit_rounds() -> None:
         before = fitted()
     assert not before.steps
     assert set(rounded.steps) == set(rounded.tensors) == set(fitted().steps)
-    weights = [
+    first, second = (
         np.concatenate([t.ravel() for t in each.tensors.values()]) for each in (before, rounded)
-    ]
-    assert not np.array_equal(*weights)
-    assert np.corrcoef(*weights)[0, 1] > 0.99
+    )
+    assert not np.array_equal(first, second)
+    assert np.corrcoef(first, second)[0, 1] > 0.99

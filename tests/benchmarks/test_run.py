@@ -88,6 +88,7 @@ def test_plan_goes_on_past_what_cannot_run(monkeypatch: pytest.MonkeyPatch) -> N
     chosen = [Source(Path(f"{name}.obj")) for name in ("missing", "bad", "good")]
     planned = [each for source in chosen for each in plan(source, ["c"], quick=False)]
     assert planned[0] == {"asset": "missing", "codec": "c", "setting": {}, "skipped": "not here"}
+    assert isinstance(planned[1], dict)
     assert planned[1]["failure"] == "ValueError: cannot be read"
     assert planned[2:] == [Job(Path("good.obj"), "c", {"q": n}) for n in (1, 2)]
 

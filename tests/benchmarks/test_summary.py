@@ -1,16 +1,19 @@
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
 
 from benchmarks.rate_distortion.bjontegaard import delta_rate, front
 from benchmarks.rate_distortion.rows import NAMES, as_csv, from_csv, row
 from benchmarks.rate_distortion.summary import bytes_at, duels, summarized
+from nispcodec.core.arrays import Float64Array
 
 ERRORS = np.geomspace(1e-2, 1e-4, 8)
 
 
-def power_law(factor: float, errors=ERRORS) -> list[tuple[float, float]]:
+def power_law(factor: float, errors: Float64Array = ERRORS) -> list[tuple[float, float]]:
     return [(factor * error**-0.7, error) for error in errors]
 
 
@@ -39,7 +42,7 @@ def test_front_drops_what_is_not_worth_its_bytes() -> None:
     assert bytes_at([(100, 1e-2)], 5e-3) is None
 
 
-def record(codec: str, size: int, distance: float, uv: float) -> dict:
+def record(codec: str, size: int, distance: float, uv: float) -> dict[str, Any]:
     larger = {"mean": distance, "p99": 3 * distance, "max": 9 * distance}
     metrics = {
         "geometry": {"larger": larger, "d1_psnr": 60.0, "d2_psnr": 62.0},

@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from types import ModuleType
 
 import pytest
 
@@ -39,7 +40,7 @@ def test_every_record_is_asked_for_its_own_targets() -> None:
     assert [(each.name, each.verdict) for each in found] == [("spot", "missed"), ("boombox", "met")]
 
 
-RESULTS: list[tuple[object, Record, int]] = [
+RESULTS: list[tuple[ModuleType, Record, int]] = [
     (main_job, {"assets": {"boombox": {}}}, 6),
     (pictures, {"assets": {"boombox": {}}}, 2),
     (duel, {"means": {}}, 2),
@@ -52,6 +53,8 @@ RESULTS: list[tuple[object, Record, int]] = [
 
 
 @pytest.mark.parametrize(("module", "results", "count"), RESULTS)
-def test_a_command_tells_what_is_asked_of_its_results(module, results, count) -> None:
+def test_a_command_tells_what_is_asked_of_its_results(
+    module: ModuleType, results: Record, count: int
+) -> None:
     found = list(module.asked(results))
     assert [each.verdict for each in found] == ["not measured"] * count

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from click.testing import CliRunner
+from click.testing import CliRunner, Result
 from nispcodec_cli import COMMANDS, decode
 from nispcodec_cli import main as group
 
@@ -18,7 +18,7 @@ from tests import tiny
 from tests.cli.conftest import nisp
 
 
-def refused(result, *words: str) -> None:
+def refused(result: Result, *words: str) -> None:
     """The command failed in the way the user can mend: code 2, one line on stderr."""
     assert result.exit_code == 2, result.output
     assert result.stderr.startswith("nisp: error: ") or "Usage:" in result.stderr
@@ -195,7 +195,9 @@ def test_sample_can_be_loaded(tmp_path: Path) -> None:
     assert not mesh.warnings
 
 
-def test_errors_of_the_program_itself_are_not_hidden(monkeypatch, model: Path) -> None:
+def test_errors_of_the_program_itself_are_not_hidden(
+    monkeypatch: pytest.MonkeyPatch, model: Path
+) -> None:
     def broken(*_: object) -> None:
         raise AssertionError("a bug")
 

@@ -1,16 +1,20 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import pytest
 from nispcodec_cli import encode, pruning
 from nispcodec_cli.progress import Bars, Lines, described, duration
 
 import nispcodec
+from nispcodec.core.asset import TexturedMesh
+from nispcodec.core.document import Document
 from nispcodec.core.errors import FitError
-from nispcodec.core.progress import Progress
-from nispcodec.encode.config import PRESETS
+from nispcodec.core.progress import Listener, Progress
+from nispcodec.encode.config import PRESETS, EncodeConfig
 from nispcodec.model import NispModel
 from nispcodec.train.prune import STRATEGIES
 from tests import tiny
@@ -24,13 +28,17 @@ UPDATES = [
 ]
 
 
-@pytest.fixture
-def encoder(monkeypatch):
-    """Stand-in for the encoder: tells UPDATES, then does what the test wants."""
-    seen = {}
+# Takes what an encode ends in, and tells later what it was asked.
+Encoder = Callable[[Document | BaseException], dict[str, Any]]
 
-    def install(outcome):
-        def encode(mesh, config, progress):
+
+@pytest.fixture
+def encoder(monkeypatch: pytest.MonkeyPatch) -> Encoder:
+    """Stand-in for the encoder: tells UPDATES, then does what the test wants."""
+    seen: dict[str, Any] = {}
+
+    def install(outcome: Document | BaseException) -> dict[str, Any]:
+        def encode(mesh: TexturedMesh, config: EncodeConfig, progress: Listener) -> NispModel:
             seen.update(mesh=mesh, config=config)
             for update in UPDATES:
                 progress(update)
@@ -44,7 +52,7 @@ def encoder(monkeypatch):
     return install
 
 
-def test_encode_writes_and_reports(encoder, mesh: Path, tmp_path: Path) -> None:
+def test_encode_writes_and_reports(encoder: Encoder, mesh: Path, tmp_path: Path) -> None:
     seen = encoder(tiny.document())
     out = tmp_path / "out.nisp"
     result = nisp("encode", mesh, "-o", out, "--seed", 7, "--no-textures", "--json")
@@ -61,7 +69,9 @@ def test_encode_writes_and_reports(encoder, mesh: Path, tmp_path: Path) -> None:
     ("rate", "expected"),
     [("0.3", 0.3), ("sdf=0.5,uv=.25", {"sdf": 0.5, "uv": 0.25}), ("chart=0", {"chart": 0.0})],
 )
-def test_pruning_is_asked_for(encoder, mesh: Path, tmp_path: Path, rate: str, expected) -> None:
+def test_pruning_is_asked_for(
+    encoder: Encoder, mesh: Path, tmp_path: Path, rate: str, expected: object
+) -> None:
     seen = encoder(tiny.document())
     options = ["--prune", "large_final", "--prune-rate", rate, "--prune-rounds", 3, "--quiet"]
     result = nisp("encode", mesh, "-o", tmp_path / "out.nisp", *options)
@@ -80,7 +90,7 @@ def test_pruning_is_asked_for(encoder, mesh: Path, tmp_path: Path, rate: str, ex
     ],
 )
 def test_a_rate_that_makes_no_sense(
-    encoder, mesh: Path, tmp_path: Path, rate: str, said: str
+    encoder: Encoder, mesh: Path, tmp_path: Path, rate: str, said: str
 ) -> None:
     seen = encoder(tiny.document())
     out = tmp_path / "out.nisp"
@@ -94,7 +104,9 @@ def test_a_rate_that_makes_no_sense(
     ("given", "expected"),
     [("20000", 20000), ("20kB", 20000), ("1.5 KiB", 1536), (".5MB", 500_000)],
 )
-def test_a_target_size(encoder, mesh: Path, tmp_path: Path, given: str, expected: int) -> None:
+def test_a_target_size(
+    encoder: Encoder, mesh: Path, tmp_path: Path, given: str, expected: int
+) -> None:
     seen = encoder(tiny.document())
     result = nisp("encode", mesh, "-o", tmp_path / "out.nisp", "--target-size", given)
     assert result.exit_code == 0, result.output
@@ -114,7 +126,7 @@ def test_a_target_size(encoder, mesh: Path, tmp_path: Path, given: str, expected
     ],
 )
 def test_targets_that_make_no_sense(
-    encoder, mesh: Path, tmp_path: Path, options: list[str], said: str
+    encoder: Encoder, mesh: Path, tmp_path: Path, options: list[str], said: str
 ) -> None:
     seen = encoder(tiny.document())
     result = nisp("encode", mesh, "-o", tmp_path / "out.nisp", *options)
@@ -127,21 +139,21 @@ def test_every_strategy_is_offered() -> None:
     assert tuple(STRATEGIES) == pruning.STRATEGIES
 
 
-def test_a_rate_needs_a_strategy(encoder, mesh: Path, tmp_path: Path) -> None:
+def test_a_rate_needs_a_strategy(encoder: Encoder, mesh: Path, tmp_path: Path) -> None:
     encoder(tiny.document())
     result = nisp("encode", mesh, "-o", tmp_path / "out.nisp", "--prune-rate", "0.5")
     assert result.exit_code == 2
     assert "--prune-rate needs --prune" in result.stderr
 
 
-def test_encode_report_for_people(encoder, mesh: Path, tmp_path: Path) -> None:
+def test_encode_report_for_people(encoder: Encoder, mesh: Path, tmp_path: Path) -> None:
     encoder(tiny.document())
     result = nisp("encode", mesh, "-o", tmp_path / "out.nisp")
     assert result.exit_code == 0, result.output
     assert "geometry_uv" in result.stdout
 
 
-def test_quiet_is_quiet(encoder, mesh: Path, tmp_path: Path) -> None:
+def test_quiet_is_quiet(encoder: Encoder, mesh: Path, tmp_path: Path) -> None:
     encoder(tiny.document())
     assert nisp("encode", mesh, "-o", tmp_path / "out.nisp", "--quiet").stderr == ""
 
@@ -155,7 +167,7 @@ def test_quiet_is_quiet(encoder, mesh: Path, tmp_path: Path) -> None:
     ],
 )
 def test_nothing_is_written_when_it_fails(
-    encoder, mesh: Path, tmp_path: Path, outcome: BaseException, code: int, said: str
+    encoder: Encoder, mesh: Path, tmp_path: Path, outcome: BaseException, code: int, said: str
 ) -> None:
     encoder(outcome)
     before = sorted(tmp_path.iterdir())
@@ -165,7 +177,9 @@ def test_nothing_is_written_when_it_fails(
     assert sorted(tmp_path.iterdir()) == before
 
 
-def test_bad_output_is_refused_before_any_work(encoder, mesh: Path, tmp_path: Path) -> None:
+def test_bad_output_is_refused_before_any_work(
+    encoder: Encoder, mesh: Path, tmp_path: Path
+) -> None:
     seen = encoder(tiny.document())
     assert nisp("encode", mesh, "-o", tmp_path / "out.obj").exit_code == 2
     assert nisp("encode", mesh, "-o", tmp_path / "nowhere" / "out.nisp").exit_code == 2
@@ -173,7 +187,9 @@ def test_bad_output_is_refused_before_any_work(encoder, mesh: Path, tmp_path: Pa
 
 
 @pytest.mark.parametrize("content", ["", "v 0 0 0\n", "v 0 0 nan\nf 1 1 1\n", "f 1 2 3\n"])
-def test_bad_mesh_is_named_and_nothing_written(encoder, tmp_path: Path, content: str) -> None:
+def test_bad_mesh_is_named_and_nothing_written(
+    encoder: Encoder, tmp_path: Path, content: str
+) -> None:
     encoder(tiny.document())
     (tmp_path / "bad.obj").write_text(content)
     result = nisp("encode", tmp_path / "bad.obj", "-o", tmp_path / "out.nisp")
@@ -183,7 +199,7 @@ def test_bad_mesh_is_named_and_nothing_written(encoder, tmp_path: Path, content:
     assert not (tmp_path / "out.nisp").exists()
 
 
-def test_missing_texture_is_a_warning(encoder, mesh: Path, tmp_path: Path) -> None:
+def test_missing_texture_is_a_warning(encoder: Encoder, mesh: Path, tmp_path: Path) -> None:
     encoder(tiny.document())
     next(tmp_path.glob("*.png")).unlink()
     result = nisp("encode", mesh, "-o", tmp_path / "out.nisp", "--quiet")
@@ -199,7 +215,9 @@ def test_line_says_what_is_known() -> None:
     assert described(UPDATES[2]).endswith("diverged at step 11, retrying")
 
 
-def test_lines_come_for_stages_and_notes_only_while_time_is_short(capsys) -> None:
+def test_lines_come_for_stages_and_notes_only_while_time_is_short(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
     show = Lines()
     for step in range(100):
         show(Progress("sdf", "fit", step=step, steps=100))
@@ -209,7 +227,7 @@ def test_lines_come_for_stages_and_notes_only_while_time_is_short(capsys) -> Non
     assert [line.split(":")[0] for line in lines] == ["sdf fit", "sdf quantize", "sdf quantize"]
 
 
-def test_bars_keep_one_row_a_network(capsys) -> None:
+def test_bars_keep_one_row_a_network(capsys: pytest.CaptureFixture[str]) -> None:
     with Bars() as show:
         for update in UPDATES:
             show(update)

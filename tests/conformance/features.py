@@ -226,6 +226,7 @@ def _tables() -> Iterator[tuple[str, bytes]]:
         "charts-many",
         pack(dataclasses.replace(plain(), charts=many, materials=kinds, chart=wide)),
     )
+    assert base.chart is not None
     tie = {name: tensor[[0, 0]] if name in ("weight.1", "bias.1") else tensor
            for name, tensor in base.chart.tensors.items()}  # fmt: skip
     yield "charts-tie", pack(dataclasses.replace(base, chart=Network(base.chart.spec, tie)))

@@ -288,8 +288,8 @@ def _materials() -> Iterator[Malformed]:
         "texture-length-of-last": ([{1: "a", 3: 1}], "keys"),
         "texture-key-unknown": ([{1: "a", 4: 1}], "keys"),
     }
-    for name, (fields, field) in textures.items():
-        yield Malformed(name, container(rows(meta({8: fields}))), "META", f"textures.0.{field}")
+    for name, (listed, field) in textures.items():
+        yield Malformed(name, container(rows(meta({8: listed}))), "META", f"textures.0.{field}")
 
 
 def _relations() -> Iterator[Malformed]:

@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from nispcodec.core.arrays import BoolArray, Float32Array
+from nispcodec.core.arrays import AnyArray, BoolArray, Float32Array
 from nispcodec.core.document import Frame
 from nispcodec.core.texture import decode_image
 from nispcodec.format import unpack
@@ -33,7 +33,7 @@ def answers(data: bytes) -> dict[str, Any]:
     model = NispModel(document)
     points = np.random.default_rng(7).uniform(-0.8, 0.8, (400, 3)).round(3).astype(np.float32)
     points = points[_steady(model, points)][:POINTS]
-    found = {
+    found: dict[str, AnyArray] = {
         "points": points,
         "sdf": model.sdf(points, "normalized"),
         "chart": model.charts(points, "normalized"),

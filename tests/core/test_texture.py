@@ -27,8 +27,10 @@ def encoded(image: PIL.Image.Image, kind: str = "PNG") -> Texture:
     return Texture("t.png", buffer.getvalue(), "image/png")
 
 
-def sampled(u: float, v: float, **how: object) -> float:
-    return float(sample_texture(SMALL, np.array([[u, v]]), **how)[0, 0])
+def sampled(
+    u: float, v: float, wrap: tuple[str, str] = ("repeat", "repeat"), filter: str = "linear"
+) -> float:
+    return float(sample_texture(SMALL, np.array([[u, v]]), wrap, filter)[0, 0])
 
 
 def test_origin_is_bottom_left() -> None:

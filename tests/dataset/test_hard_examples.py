@@ -6,6 +6,7 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
+from nispcodec.core.arrays import Float32Array
 from nispcodec.dataset.hard_examples import error_radii
 
 RADIUS = 0.075
@@ -17,14 +18,15 @@ def grid() -> np.ndarray:
     return np.stack(np.meshgrid(line, line, line), axis=3).reshape(-1, 3).astype(np.float32)
 
 
-def ball(points: np.ndarray, center: float, radius: float) -> np.ndarray:
+def ball(points: Float32Array, center: float, radius: float) -> Float32Array:
     """(n,) signed distance to a ball on the x axis."""
-    return np.linalg.norm(points - [center, 0, 0], axis=1).astype(np.float32) - np.float32(radius)
+    away: Float32Array = np.linalg.norm(points - [center, 0, 0], axis=1).astype(np.float32)
+    return away - np.float32(radius)
 
 
 def test_a_field_without_mistakes_has_no_reach() -> None:
     sdf = ball(grid(), 0.0, 0.15)
-    assert not error_radii(grid(), sdf, 0.3 * sdf, RADIUS).any()
+    assert not error_radii(grid(), sdf, np.float32(0.3) * sdf, RADIUS).any()
 
 
 def test_a_missing_part_weighs_more_than_a_surface_that_is_a_little_off() -> None:

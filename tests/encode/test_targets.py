@@ -15,6 +15,7 @@ from nispcodec.core.network import Network
 from nispcodec.core.progress import Listener, Progress, silent
 from nispcodec.dataset.recipes import TrainingSets
 from nispcodec.encode.targets import (
+    Fit,
     FitContext,
     Networks,
     fit_to_error,
@@ -54,7 +55,7 @@ def by_law(tasks: list[Task], listen: Listener) -> Networks:
     return networks
 
 
-def fitting(fit=by_law, listen: Listener = silent) -> FitContext:
+def fitting(fit: Fit = by_law, listen: Listener = silent) -> FitContext:
     return FitContext(problem(), TrainingBudget(2.0, 0.5, 1, 100), fit, listen)
 
 

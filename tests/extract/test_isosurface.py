@@ -54,7 +54,8 @@ def test_blocks_give_the_same_surface_as_the_full_grid(ball: Network) -> None:
 
 
 def test_empty_field_gives_no_faces() -> None:
-    surface = extract(tiny.relu_network([(np.eye(3), np.zeros(3)), (np.zeros((1, 3)), [1.0])]), 32)
+    layers = [(np.eye(3), np.zeros(3)), (np.zeros((1, 3)), np.ones(1))]
+    surface = extract(tiny.relu_network(layers), 32)
     assert surface.positions.shape == (0, 3)
     assert surface.faces.shape == (0, 3)
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+from typing import Any
 
 import numpy as np
 import pytest
@@ -115,7 +116,7 @@ def test_weights_that_are_no_multiples_of_their_step() -> None:
         ({"extra": {f"X{i:03}": b"" for i in range(64)}}, "section count"),
     ],
 )
-def test_documents_that_cannot_be_written(change: dict[str, object], field: str) -> None:
+def test_documents_that_cannot_be_written(change: dict[str, Any], field: str) -> None:
     with pytest.raises(FormatError) as caught:
         pack(dataclasses.replace(tiny(), **change))
     assert caught.value.field == field

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import random
 from collections import defaultdict
+from typing import Any
 
 import numpy as np
 import pytest
@@ -102,7 +103,7 @@ def test_fields_are_those_that_the_reader_asks_for(monkeypatch: pytest.MonkeyPat
     asked = defaultdict(set)
     take = Record.take
 
-    def noting(record, key, name, kind, default=None):  # type: ignore[no-untyped-def]
+    def noting(record: Record, key: int, name: str, kind: type[Any], default: Any = None) -> Any:
         asked[record.path].add((key, name))
         return take(record, key, name, kind, default)
 
@@ -181,8 +182,8 @@ def matrices(made: network.Network) -> list[tuple[int, int]]:
     ],
     ids=["plain", "fourier", "scalar", "both", "embedding", "chart_affine", "mirror"],
 )
-def test_its_evaluator(options: dict[str, object]) -> None:
-    made = random_network(network.NetworkSpec((8, 7), 2, **options), scale=0.1)  # type: ignore[arg-type]
+def test_its_evaluator(options: dict[str, Any]) -> None:
+    made = random_network(network.NetworkSpec((8, 7), 2, **options), scale=0.1)
     points = np.random.default_rng(0).uniform(-1, 1, (20, 3)).astype(np.float32)
     charts = np.arange(20) % 5
     expected = evaluate(made, points, charts if made.spec.charts else None)

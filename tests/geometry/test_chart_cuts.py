@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from nispcodec.core.asset import TexturedMesh
 from nispcodec.geometry.chart_cuts import split_self_seams
-from nispcodec.geometry.charts import split_charts
+from nispcodec.geometry.charts import Charts, split_charts
 from tests.geometry.shapes import box_asset, hemisphere, soup
 
 
@@ -24,9 +25,9 @@ def unrolled(turns: float = 1.0, columns: int = 12) -> tuple[np.ndarray, np.ndar
     return quads(low, high), quads(uv_low, uv_high)
 
 
-def self_seams(mesh, charts) -> int:
+def self_seams(mesh: TexturedMesh, charts: Charts) -> int:
     """Position edges whose two faces share a chart but not the UVs."""
-    seen: dict[tuple, set] = {}
+    seen: dict[object, set[object]] = {}
     for chart, points, uvs in zip(charts.face_charts, mesh.corners, mesh.corner_uvs, strict=True):
         for i in range(3):
             ends = sorted(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
@@ -74,7 +75,7 @@ def by_hand(network: Network, point: np.ndarray, chart: int) -> list[float]:
     if spec.conditioning == "chart_affine":
         slopes = network.tensors["slopes"][chart].reshape(len(last), -1).astype(float)
         last = last + slopes @ np.array(coordinates) + network.tensors["offsets"][chart]
-    outputs = {
+    outputs: dict[str, Callable[[float], float]] = {
         "identity": lambda z: z,
         "tanh": math.tanh,
         "sigmoid": lambda z: 1 / (1 + math.exp(-z)),
@@ -166,7 +167,8 @@ def test_a_mirror_makes_values_symmetric_and_gradients_antisymmetric(mirror: int
 def test_on_the_plane_of_a_mirror_the_gradient_lies_in_it() -> None:
     network = tiny.random_network(NetworkSpec((8, 8), 1, w0=2.0, mirror=0b001))
     point = np.array([[0.0, 0.3, -0.2], [-0.0, 0.3, -0.2]], np.float32)
-    beside = gradient(network, point + np.float32([[1e-6, 0, 0], [-1e-6, 0, 0]]))[1]
+    aside = np.array([[1e-6, 0, 0], [-1e-6, 0, 0]], np.float32)
+    beside = gradient(network, point + aside)[1]
     slopes = gradient(network, point)[1]
     assert (slopes[:, 0] == 0).all()
     assert slopes == pytest.approx(np.tile(beside.mean(axis=0), (2, 1)), abs=1e-5)

@@ -27,7 +27,7 @@ EXPECTED = {
 
 
 @pytest.mark.parametrize("name", EXPECTED)
-def test_real_asset(name: str):
+def test_real_asset(name: str) -> None:
     path = ASSETS / name / f"{name}.obj"
     if not path.exists():
         pytest.skip(f"no asset {path}")

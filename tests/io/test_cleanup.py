@@ -2,23 +2,30 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from numpy.typing import ArrayLike
 
 from nispcodec.core.asset import Material, TexturedMesh
 from nispcodec.core.errors import MeshError
 from nispcodec.io.cleanup import clean
 
 
-def mesh(positions, faces, uvs=(), uv_faces=None, face_materials=None) -> TexturedMesh:
-    faces = np.array(faces, dtype=np.int32).reshape(-1, 3)
+def mesh(
+    positions: ArrayLike,
+    faces: ArrayLike,
+    uvs: ArrayLike = (),
+    uv_faces: ArrayLike | None = None,
+    face_materials: ArrayLike | None = None,
+) -> TexturedMesh:
+    corners = np.array(faces, dtype=np.int32).reshape(-1, 3)
     return TexturedMesh(
         positions=np.array(positions, dtype=float),
-        faces=faces,
+        faces=corners,
         uvs=np.array(uvs, dtype=float).reshape(-1, 2),
-        uv_faces=np.full_like(faces, -1)
+        uv_faces=np.full_like(corners, -1)
         if uv_faces is None
         else np.array(uv_faces, dtype=np.int32),
         face_materials=np.array(
-            face_materials if face_materials is not None else [0] * len(faces), dtype=np.int32
+            face_materials if face_materials is not None else [0] * len(corners), dtype=np.int32
         ),
         materials=(Material(), Material()),
     )
@@ -27,7 +34,7 @@ def mesh(positions, faces, uvs=(), uv_faces=None, face_materials=None) -> Textur
 SQUARE = [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0)]
 
 
-def test_a_clean_mesh_stays_as_it_is():
+def test_a_clean_mesh_stays_as_it_is() -> None:
     before = mesh(
         SQUARE, [(0, 1, 2), (0, 2, 3)], [(0, 0), (1, 0), (1, 1)], [(0, 1, 2), (-1, -1, -1)]
     )
@@ -43,31 +50,31 @@ def test_a_clean_mesh_stays_as_it_is():
     ids=["same", "beyond", "rounding", "behind"],
 )
 @pytest.mark.parametrize("scale", [1e-9, 1.0, 1e9])
-def test_degenerate_faces_go_at_any_scale(third, scale: float):
+def test_degenerate_faces_go_at_any_scale(third: tuple[float, float, float], scale: float) -> None:
     positions = np.array([*SQUARE, third], dtype=float) * scale
     after = clean(mesh(positions, [(0, 1, 4), (0, 1, 2), (0, 2, 3)]), "a.obj")
     assert len(after.faces) == 2
     assert after.warnings == ("dropped 1 degenerate face", "dropped 1 unreferenced vertex")
 
 
-def test_a_thin_triangle_is_a_surface():
+def test_a_thin_triangle_is_a_surface() -> None:
     positions = [(0, 0, 0), (1, 0, 0), (0.5, 1e-6, 0)]
     assert clean(mesh(positions, [(0, 1, 2)]), "a.obj").warnings == ()
 
 
-def test_duplicates_go_whatever_corner_they_start_from():
+def test_duplicates_go_whatever_corner_they_start_from() -> None:
     after = clean(mesh(SQUARE, [(0, 1, 2), (1, 2, 0), (2, 0, 1), (0, 2, 3)]), "a.obj")
     assert after.faces.tolist() == [[0, 1, 2], [0, 2, 3]]
     assert after.warnings == ("dropped 2 duplicate faces",)
 
 
-def test_duplicates_are_compared_by_value():
+def test_duplicates_are_compared_by_value() -> None:
     positions = [(0, 0, 0), (1, 0, 0), (0, 1, 0), (-0.0, 0, 0), (1, 0, 0), (0, 1, 0)]
     after = clean(mesh(positions, [(0, 1, 2), (3, 4, 5)]), "a.obj")
     assert len(after.faces) == 1
 
 
-def test_faces_that_differ_in_anything_stay():
+def test_faces_that_differ_in_anything_stay() -> None:
     uvs = [(0, 0), (1, 0), (1, 1)]
     faces = [(0, 1, 2), (0, 2, 1), (0, 1, 2), (0, 1, 2)]
     uv_faces = [(0, 1, 2), (0, 2, 1), (1, 2, 0), (0, 1, 2)]
@@ -75,12 +82,12 @@ def test_faces_that_differ_in_anything_stay():
     assert clean(before, "a.obj").warnings == ()
 
 
-def test_vertices_of_equal_position_are_not_merged():
+def test_vertices_of_equal_position_are_not_merged() -> None:
     positions = [*SQUARE[:3], *SQUARE[:1], *SQUARE[2:]]
     assert len(clean(mesh(positions, [(0, 1, 2), (3, 4, 5)]), "a.obj").positions) == 6
 
 
-def test_unreferenced_rows_go_and_the_rest_keeps_its_order():
+def test_unreferenced_rows_go_and_the_rest_keeps_its_order() -> None:
     before = mesh(
         [(9, 9, 9), *SQUARE], [(1, 2, 3)], [(5, 5), (0, 0), (6, 6), (1, 0), (1, 1)], [(1, 3, 4)]
     )
@@ -101,6 +108,6 @@ def test_unreferenced_rows_go_and_the_rest_keeps_its_order():
         ([(0, 0, 0), (1e200, 0, 0), (0, 1, 0)], [(0, 1, 2)], "found 1e.200"),
     ],
 )
-def test_nothing_to_encode(positions, faces, message: str):
+def test_nothing_to_encode(positions: ArrayLike, faces: ArrayLike, message: str) -> None:
     with pytest.raises(MeshError, match=rf"a\.obj: expected .*{message}"):
         clean(mesh(positions, faces), "a.obj")

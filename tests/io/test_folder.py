@@ -15,6 +15,12 @@ def folder(tmp_path: Path) -> Folder:
     return Folder(tmp_path / "asset")
 
 
+def found_text(folder: Folder, reference: str) -> str:
+    path = folder.find(reference)
+    assert path is not None
+    return path.read_text()
+
+
 @pytest.mark.parametrize(
     ("reference", "found"),
     [
@@ -28,25 +34,23 @@ def folder(tmp_path: Path) -> Folder:
         ("/somewhere/else/wood.png", "asset/wood.png"),
     ],
 )
-def test_finds(folder: Folder, reference: str, found: str):
-    path = folder.find(reference)
-    assert path is not None
-    assert path.read_text() == found
+def test_finds(folder: Folder, reference: str, found: str) -> None:
+    assert found_text(folder, reference) == found
 
 
 @pytest.mark.parametrize(
     "reference", ["", ".", "..", "Maps", "gone.png", "wood.png/x", "nul\0", "x" * 5000, "stone.jpg"]
 )
-def test_finds_nothing(folder: Folder, reference: str):
+def test_finds_nothing(folder: Folder, reference: str) -> None:
     assert folder.find(reference) is None
 
 
-def test_an_exact_name_goes_before_another_case(folder: Folder):
+def test_an_exact_name_goes_before_another_case(folder: Folder) -> None:
     (folder.path / "WOOD.png").write_text("upper")
-    assert folder.find("WOOD.png").read_text() == "upper"
-    assert folder.find("wood.png").read_text() == "asset/wood.png"
+    assert found_text(folder, "WOOD.png") == "upper"
+    assert found_text(folder, "wood.png") == "asset/wood.png"
 
 
-def test_an_absolute_path_that_is_here(folder: Folder):
+def test_an_absolute_path_that_is_here(folder: Folder) -> None:
     other = (folder.path.parent / "other.png").resolve()
     assert folder.find(str(other)) == other

@@ -3,6 +3,7 @@ from __future__ import annotations
 import base64
 import json
 import math
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -45,7 +46,7 @@ def textured(info: dict[str, Any] | None = None, **material: Any) -> Gltf:
     return gltf.scene([triangle(gltf, material=0)])
 
 
-def test_positions_faces_and_flipped_uvs(tmp_path: Path):
+def test_positions_faces_and_flipped_uvs(tmp_path: Path) -> None:
     mesh = one_triangle().load(tmp_path)
     assert mesh.corners.tolist() == [[list(corner) for corner in CORNERS]]
     assert mesh.corner_uvs.tolist() == [[[0, 1], [0.25, 0.5], [2, 2]]]
@@ -53,7 +54,7 @@ def test_positions_faces_and_flipped_uvs(tmp_path: Path):
     assert mesh.name == "a"
 
 
-def test_a_gltf_with_data_uris_or_external_files_equals_the_glb(tmp_path: Path):
+def test_a_gltf_with_data_uris_or_external_files_equals_the_glb(tmp_path: Path) -> None:
     glb = one_triangle().load(tmp_path)
     gltf = one_triangle()
     (tmp_path / "b.gltf").write_bytes(gltf.text())
@@ -67,7 +68,7 @@ def test_a_gltf_with_data_uris_or_external_files_equals_the_glb(tmp_path: Path):
         np.testing.assert_array_equal(mesh.corner_uvs, glb.corner_uvs)
 
 
-def test_without_indices_and_without_uvs(tmp_path: Path):
+def test_without_indices_and_without_uvs(tmp_path: Path) -> None:
     gltf = Gltf()
     primitive = triangle(gltf, uvs=False)
     del primitive["indices"]
@@ -80,7 +81,7 @@ def test_without_indices_and_without_uvs(tmp_path: Path):
     ("dtype", "top", "more"),
     [("u1", 255, {}), ("<u2", 65535, {}), ("i1", 127, {}), ("<i2", 32767, {})],
 )
-def test_normalized_integers(tmp_path: Path, dtype: str, top: int, more: dict[str, Any]):
+def test_normalized_integers(tmp_path: Path, dtype: str, top: int, more: dict[str, Any]) -> None:
     gltf = Gltf()
     primitive = triangle(gltf)
     stored = [(0, top), (top, 0), (top // 3, 0)]
@@ -92,7 +93,7 @@ def test_normalized_integers(tmp_path: Path, dtype: str, top: int, more: dict[st
     np.testing.assert_array_equal(mesh.corner_uvs[0, :, 1], 1 - expected[:, 1])
 
 
-def test_quantized_positions(tmp_path: Path):
+def test_quantized_positions(tmp_path: Path) -> None:
     gltf = Gltf()
     primitive = triangle(gltf)
     primitive["attributes"]["POSITION"] = gltf.accessor(np.array(CORNERS) * 100, "<u2")
@@ -101,7 +102,7 @@ def test_quantized_positions(tmp_path: Path):
     np.testing.assert_allclose(mesh.corners[0], CORNERS)
 
 
-def test_interleaved_attributes(tmp_path: Path):
+def test_interleaved_attributes(tmp_path: Path) -> None:
     gltf = Gltf()
     rows = np.hstack([CORNERS, UVS, [[9.0]] * 3]).astype("<f4")
     view = gltf.view(rows.tobytes(), byteStride=24)
@@ -116,7 +117,7 @@ def test_interleaved_attributes(tmp_path: Path):
 
 
 @pytest.mark.parametrize("base", [True, False])
-def test_sparse_accessors(tmp_path: Path, base: bool):
+def test_sparse_accessors(tmp_path: Path, base: bool) -> None:
     gltf = Gltf()
     sparse = {
         "count": 2,
@@ -138,14 +139,14 @@ def test_sparse_accessors(tmp_path: Path, base: bool):
         (6, [[1, 2, 0], [2, 3, 0], [3, 4, 0], [4, 5, 0]]),
     ],
 )
-def test_lists_strips_and_fans(tmp_path: Path, mode: int, expected: list[list[int]]):
+def test_lists_strips_and_fans(tmp_path: Path, mode: int, expected: list[list[int]]) -> None:
     gltf = Gltf()
     points = np.random.default_rng(0).normal(size=(6, 3))
     primitive = {"attributes": {"POSITION": gltf.accessor(points)}, "mode": mode}
     assert gltf.scene([primitive]).load(tmp_path).faces.tolist() == expected
 
 
-def test_points_and_lines_are_left_out_by_name(tmp_path: Path):
+def test_points_and_lines_are_left_out_by_name(tmp_path: Path) -> None:
     gltf = Gltf()
     lines = {"attributes": {"POSITION": gltf.accessor(CORNERS)}, "mode": 1}
     mesh = gltf.scene([triangle(gltf), lines]).load(tmp_path)
@@ -155,7 +156,7 @@ def test_points_and_lines_are_left_out_by_name(tmp_path: Path):
     )
 
 
-def test_node_transforms_apply_from_the_root_down(tmp_path: Path):
+def test_node_transforms_apply_from_the_root_down(tmp_path: Path) -> None:
     half = math.sqrt(0.5)
     gltf = one_triangle(translation=[0, 0, 5], scale=[2, 2, 2])
     gltf.json["nodes"].append({"children": [0], "rotation": [0, 0, half, half]})
@@ -167,14 +168,14 @@ def test_node_transforms_apply_from_the_root_down(tmp_path: Path):
     np.testing.assert_allclose(mesh.corners[0], [(1, 0, 5), (1, 2, 5), (-1, 0, 5)], atol=1e-12)
 
 
-def test_mirroring_transforms_flip_the_winding(tmp_path: Path):
+def test_mirroring_transforms_flip_the_winding(tmp_path: Path) -> None:
     mesh = one_triangle(scale=[1, 1, -1]).load(tmp_path)
     a, b, c = mesh.corners[0]
     assert np.cross(b - a, c - a)[2] < 0
     assert mesh.corner_uvs[0].tolist() == [[0, 1], [2, 2], [0.25, 0.5]]
 
 
-def test_instances_of_a_mesh(tmp_path: Path):
+def test_instances_of_a_mesh(tmp_path: Path) -> None:
     gltf = one_triangle()
     gltf.json["nodes"].append({"mesh": 0, "translation": [10, 0, 0]})
     gltf.json["scenes"] = [{"nodes": [0, 1]}]
@@ -182,20 +183,20 @@ def test_instances_of_a_mesh(tmp_path: Path):
     assert mesh.corners[:, 0, 0].tolist() == [0, 10]
 
 
-def test_a_file_without_scenes_shows_its_root_nodes(tmp_path: Path):
+def test_a_file_without_scenes_shows_its_root_nodes(tmp_path: Path) -> None:
     gltf = one_triangle()
     del gltf.json["scenes"]
     assert len(gltf.load(tmp_path).faces) == 1
 
 
-def test_only_the_default_scene_counts(tmp_path: Path):
+def test_only_the_default_scene_counts(tmp_path: Path) -> None:
     gltf = one_triangle()
     gltf.json["nodes"].append({"mesh": 0, "translation": [10, 0, 0]})
     gltf.json.update(scenes=[{"nodes": [0]}, {"nodes": [1]}], scene=1)
     assert gltf.load(tmp_path).positions[0].tolist() == [10, 0, 0]
 
 
-def test_primitives_share_vertices_and_keep_their_materials(tmp_path: Path):
+def test_primitives_share_vertices_and_keep_their_materials(tmp_path: Path) -> None:
     gltf = Gltf()
     first = triangle(gltf, material=1)
     second = {**first, "indices": gltf.accessor([0, 2, 1], "<u4"), "material": 0}
@@ -208,7 +209,7 @@ def test_primitives_share_vertices_and_keep_their_materials(tmp_path: Path):
     assert [material.name for material in loaded.materials] == ["one", "zero", "material"]
 
 
-def test_material_values(tmp_path: Path):
+def test_material_values(tmp_path: Path) -> None:
     gltf = textured(
         alphaMode="MASK", alphaCutoff=0.25, doubleSided=True, emissiveFactor=[0.5, 0, 1],
         normalTexture={"index": 0, "scale": 0.5}, occlusionTexture={"index": 0, "strength": 0.25},
@@ -231,14 +232,14 @@ def test_material_values(tmp_path: Path):
     assert [texture.data for texture in mesh.textures] == [image()]
 
 
-def test_defaults_are_those_of_gltf(tmp_path: Path):
+def test_defaults_are_those_of_gltf(tmp_path: Path) -> None:
     gltf = Gltf()
     gltf.json["materials"] = [{}]
     made = gltf.scene([triangle(gltf, material=0)]).load(tmp_path).materials[0]
     assert (made.metallic, made.roughness, made.base_color) == (1.0, 1.0, (1.0, 1.0, 1.0, 1.0))
 
 
-def test_samplers(tmp_path: Path):
+def test_samplers(tmp_path: Path) -> None:
     gltf = textured()
     gltf.json["samplers"] = [{"wrapS": 33071, "wrapT": 33648, "magFilter": 9728}]
     gltf.json["textures"][0]["sampler"] = 0
@@ -246,7 +247,7 @@ def test_samplers(tmp_path: Path):
     assert (used.wrap, used.filter) == (("clamp", "mirror"), "nearest")
 
 
-def test_texture_transform_applies_before_the_flip(tmp_path: Path):
+def test_texture_transform_applies_before_the_flip(tmp_path: Path) -> None:
     moved = {"offset": [0, 1], "rotation": math.pi / 2, "scale": [0.5, 0.5]}
     mesh = textured({"extensions": {"KHR_texture_transform": moved}}).load(tmp_path)
     # The extension's own example: the lower left quadrant of the image.
@@ -254,7 +255,7 @@ def test_texture_transform_applies_before_the_flip(tmp_path: Path):
     np.testing.assert_allclose(mesh.corner_uvs[0], expected, atol=1e-12)
 
 
-def test_texcoord_chooses_the_uvs(tmp_path: Path):
+def test_texcoord_chooses_the_uvs(tmp_path: Path) -> None:
     gltf = textured({"texCoord": 1})
     other = [(0.5, 0.5), (1, 0), (0, 0)]
     attributes = gltf.json["meshes"][0]["primitives"][0]["attributes"]
@@ -263,14 +264,14 @@ def test_texcoord_chooses_the_uvs(tmp_path: Path):
     assert mesh.corner_uvs[0].tolist() == [[u, 1 - v] for u, v in other]
 
 
-def test_maps_of_different_uvs_take_the_base_colors_and_warn(tmp_path: Path):
+def test_maps_of_different_uvs_take_the_base_colors_and_warn(tmp_path: Path) -> None:
     mesh = textured(normalTexture={"index": 0, "texCoord": 1}).load(tmp_path)
     assert mesh.corner_uvs[0, 1].tolist() == [0.25, 0.5]
     assert "those of base_color are taken for all" in mesh.warnings[0]
 
 
 @pytest.mark.parametrize("extension", ["EXT_texture_webp", "EXT_texture_avif"])
-def test_modern_images(tmp_path: Path, extension: str):
+def test_modern_images(tmp_path: Path, extension: str) -> None:
     gltf = textured()
     data = image(extension[-4:].upper())
     uri = "data:image/x;base64," + base64.b64encode(data).decode()
@@ -282,7 +283,7 @@ def test_modern_images(tmp_path: Path, extension: str):
     assert texture.mime == f"image/{extension[-4:]}"
 
 
-def test_external_images(tmp_path: Path):
+def test_external_images(tmp_path: Path) -> None:
     gltf = textured()
     gltf.json["images"] = [{"uri": "my%20wood.png"}]
     mesh = gltf.load(tmp_path)
@@ -293,14 +294,14 @@ def test_external_images(tmp_path: Path):
     assert mesh.textures[0].name == "my wood.png"
 
 
-def test_an_image_format_we_cannot_read_is_a_warning(tmp_path: Path):
+def test_an_image_format_we_cannot_read_is_a_warning(tmp_path: Path) -> None:
     gltf = textured()
     gltf.json["textures"] = [{"extensions": {"KHR_texture_basisu": {"source": 0}}}]
     mesh = gltf.load(tmp_path)
     assert mesh.warnings == ("a.glb: textures[0]: holds no image that we can read",)
 
 
-def test_specular_glossiness_becomes_diffuse_and_roughness(tmp_path: Path):
+def test_specular_glossiness_becomes_diffuse_and_roughness(tmp_path: Path) -> None:
     gltf = textured()
     glossy = {
         "diffuseFactor": [1, 0, 0, 1],
@@ -316,7 +317,7 @@ def test_specular_glossiness_becomes_diffuse_and_roughness(tmp_path: Path):
     assert "specular-glossiness" in mesh.warnings[0]
 
 
-def test_what_is_lost_is_said(tmp_path: Path):
+def test_what_is_lost_is_said(tmp_path: Path) -> None:
     gltf = one_triangle(skin=0, translation=[5, 0, 0])
     primitive = gltf.json["meshes"][0]["primitives"][0]
     primitive["attributes"]["COLOR_0"] = 0
@@ -335,7 +336,7 @@ def broken(change: str) -> bytes:
     """A document spoilt in one place."""
     gltf = textured()
     primitive = gltf.json["meshes"][0]["primitives"][0]
-    spoil = {
+    spoil: dict[str, Callable[[], object]] = {
         "version": lambda: gltf.json.update(asset={"version": "1.0"}),
         "no asset": lambda: gltf.json.pop("asset"),
         "draco": lambda: gltf.json.update(extensionsRequired=["KHR_draco_mesh_compression"]),
@@ -403,7 +404,7 @@ def broken(change: str) -> bytes:
         ("wrap", "expected wraps of"),
     ],
 )
-def test_errors_name_the_place(change: str, expected: str):
+def test_errors_name_the_place(change: str, expected: str) -> None:
     with pytest.raises(MeshError) as caught:
         read_gltf(broken(change), "a.glb", NOWHERE)
     assert str(caught.value).startswith("a.glb: ")
@@ -424,12 +425,12 @@ def test_errors_name_the_place(change: str, expected: str):
         (b'{"asset": 3}', "asset: expected an object, found 3"),
     ],
 )
-def test_malformed_containers(data: bytes, expected: str):
+def test_malformed_containers(data: bytes, expected: str) -> None:
     with pytest.raises(MeshError, match=expected):
         read_gltf(data, "a.glb", NOWHERE)
 
 
-def test_a_missing_buffer_is_named():
+def test_a_missing_buffer_is_named() -> None:
     document = json.loads(one_triangle().text())
     document["buffers"][0]["uri"] = "gone.bin"
     with pytest.raises(MeshError, match=r"buffers\[0\]: expected a binary file, found 'gone.bin'"):
@@ -456,7 +457,7 @@ DOCUMENT = json.loads(textured().text())
 
 @given(st.sampled_from(places(DOCUMENT)[1:]), VALUES)
 @settings(max_examples=300)
-def test_any_value_anywhere_gives_a_mesh_or_a_mesh_error(path: tuple[Any, ...], value: Any):
+def test_any_value_anywhere_gives_a_mesh_or_a_mesh_error(path: tuple[Any, ...], value: Any) -> None:
     document = json.loads(json.dumps(DOCUMENT))
     owner = document
     for key in path[:-1]:
@@ -467,7 +468,7 @@ def test_any_value_anywhere_gives_a_mesh_or_a_mesh_error(path: tuple[Any, ...], 
 
 
 @given(st.binary(max_size=30), st.integers(0, len(WHOLE)), st.integers(0, 30))
-def test_any_bytes_give_a_mesh_or_a_mesh_error(noise: bytes, at: int, removed: int):
+def test_any_bytes_give_a_mesh_or_a_mesh_error(noise: bytes, at: int, removed: int) -> None:
     data = WHOLE[:at] + noise + WHOLE[at + removed :]
     for spoilt in (noise, data):
         found = outcome(read_gltf, spoilt, "a.glb", NOWHERE)

@@ -8,6 +8,7 @@ import shutil
 import subprocess
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -35,7 +36,7 @@ def node() -> list[str]:
 
 def issues(
     node: list[str], mesh: TexturedMesh, folder: Path, colors: np.ndarray | None = None
-) -> dict:
+) -> dict[str, Any]:
     """The validator's issues with the mesh written as GLB."""
     path = write_mesh(mesh, folder / "out.glb", colors)[-1]
     environment = os.environ | {"NODE_PATH": str(PACKAGES)}

@@ -29,7 +29,9 @@ def shelf() -> tuple[TextureShelf, list[str]]:
         ("AVIF", "image/avif", "a.avif"),
     ],
 )
-def test_web_formats_keep_their_bytes_whatever_their_name(format: str, mime: str, name: str):
+def test_web_formats_keep_their_bytes_whatever_their_name(
+    format: str, mime: str, name: str
+) -> None:
     textures, warnings = shelf()
     textures.add("some/a.dat", image(format), "a.dat")
     (texture,) = textures.textures
@@ -38,7 +40,7 @@ def test_web_formats_keep_their_bytes_whatever_their_name(format: str, mime: str
 
 
 @pytest.mark.parametrize("format", ["TGA", "BMP", "TIFF", "GIF"])
-def test_other_formats_become_png_with_a_warning(format: str):
+def test_other_formats_become_png_with_a_warning(format: str) -> None:
     textures, warnings = shelf()
     textures.add("a.x", image(format), "a.x")
     (texture,) = textures.textures
@@ -49,7 +51,7 @@ def test_other_formats_become_png_with_a_warning(format: str):
 
 
 @pytest.mark.parametrize("start", [b"v/1\x01", b"#?RADIANCE\n", b"\xabKTX 20"])
-def test_sound_formats_that_are_not_supported_are_named(start: bytes):
+def test_sound_formats_that_are_not_supported_are_named(start: bytes) -> None:
     textures, warnings = shelf()
     assert textures.add("a.x", start + b"...", "a.x") is None
     assert "a.x: a" in warnings[0]
@@ -57,7 +59,7 @@ def test_sound_formats_that_are_not_supported_are_named(start: bytes):
     assert textures.textures == []
 
 
-def test_equal_bytes_are_one_texture_and_equal_names_stay_apart():
+def test_equal_bytes_are_one_texture_and_equal_names_stay_apart() -> None:
     textures, _ = shelf()
     added = [
         textures.add(name, image(color=color), name)
@@ -68,14 +70,14 @@ def test_equal_bytes_are_one_texture_and_equal_names_stay_apart():
 
 
 @pytest.mark.parametrize("name", ["../../evil.png", "C:\\x\\evil.png", "/evil.png", "evil.png"])
-def test_names_are_bare(name: str):
+def test_names_are_bare(name: str) -> None:
     textures, _ = shelf()
     textures.add(name, image(), name)
     assert textures.textures[0].name == "evil.png"
 
 
 @pytest.mark.parametrize("format", ["PNG", "JPEG", "WEBP"])
-def test_a_damaged_image_is_an_error_that_names_the_file(format: str):
+def test_a_damaged_image_is_an_error_that_names_the_file(format: str) -> None:
     noise = np.random.default_rng(0).integers(0, 255, (64, 64, 3), dtype=np.uint8)
     buffer = io.BytesIO()
     PIL.Image.fromarray(noise).save(buffer, format)
@@ -85,7 +87,7 @@ def test_a_damaged_image_is_an_error_that_names_the_file(format: str):
             shelf()[0].add("wood.x", damaged, "wood.x")
 
 
-def test_an_image_bomb_is_refused_by_its_header():
+def test_an_image_bomb_is_refused_by_its_header() -> None:
     header = b"IHDR" + struct.pack(">II", 20_000, 20_000) + image()[24:29]
     bomb = image()[:12] + header + struct.pack(">I", zlib.crc32(header)) + image()[33:]
     with pytest.raises(MeshError, match=r"bomb\.png: expected an image.*pixels"):
@@ -94,7 +96,7 @@ def test_an_image_bomb_is_refused_by_its_header():
 
 @given(st.binary(max_size=100), st.integers(0, 60))
 @example(b"v/1\x01", 0)
-def test_any_bytes_give_a_texture_a_warning_or_a_mesh_error(noise: bytes, at: int):
+def test_any_bytes_give_a_texture_a_warning_or_a_mesh_error(noise: bytes, at: int) -> None:
     for data in (noise, image()[:at] + noise + image()[at + len(noise) :]):
         textures, warnings = shelf()
         found = outcome(textures.add, "a.png", data, "a.png")

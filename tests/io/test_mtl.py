@@ -24,7 +24,7 @@ def material(folder: Path, mtl: str, **files: str | bytes) -> Material:
     return load(folder, mtl, **files).materials[0]
 
 
-def test_factors(tmp_path: Path):
+def test_factors(tmp_path: Path) -> None:
     made = material(tmp_path, "Kd .1 .2 .3\nd 0.5\nKe 0 0 .9\nPr 0.4\nPm 1\n")
     assert made.base_color == (0.1, 0.2, 0.3, 0.5)
     assert made.alpha_mode == "blend"
@@ -33,21 +33,21 @@ def test_factors(tmp_path: Path):
 
 
 @pytest.mark.parametrize(("line", "alpha"), [("Tr 0.25", 0.75), ("d -halo 0.5", 0.5), ("", 1.0)])
-def test_alpha(tmp_path: Path, line: str, alpha: float):
+def test_alpha(tmp_path: Path, line: str, alpha: float) -> None:
     assert material(tmp_path, line).base_color[3] == alpha
 
 
-def test_an_invisible_material_is_a_mistake(tmp_path: Path):
+def test_an_invisible_material_is_a_mistake(tmp_path: Path) -> None:
     mesh = load(tmp_path, "d 0\n")
     assert mesh.materials[0].base_color[3] == 1.0
     assert mesh.warnings == ("material 'm': invisible, taken as opaque",)
 
 
-def test_one_number_is_a_gray(tmp_path: Path):
+def test_one_number_is_a_gray(tmp_path: Path) -> None:
     assert material(tmp_path, "Kd .5\n").base_color[:3] == (0.5, 0.5, 0.5)
 
 
-def test_base_color_map_keeps_its_bytes_and_its_factor(tmp_path: Path):
+def test_base_color_map_keeps_its_bytes_and_its_factor(tmp_path: Path) -> None:
     mesh = load(tmp_path, "Kd 1 .5 1\nmap_Kd wood.png\n", wood_png=image())
     assert mesh.textures[0].data == image()
     assert (mesh.textures[0].name, mesh.textures[0].mime) == ("wood.png", "image/png")
@@ -55,51 +55,51 @@ def test_base_color_map_keeps_its_bytes_and_its_factor(tmp_path: Path):
     assert mesh.warnings == ()
 
 
-def test_black_under_a_map_means_the_map_alone(tmp_path: Path):
+def test_black_under_a_map_means_the_map_alone(tmp_path: Path) -> None:
     mesh = load(tmp_path, "Kd 0 0 0\nmap_Kd wood.png\n", wood_png=image())
     assert mesh.materials[0].base_color == (1.0, 1.0, 1.0, 1.0)
     assert "black Kd" in mesh.warnings[0]
 
 
 @pytest.mark.parametrize("keyword", ["norm", "map_Bump", "map_bump", "bump", "map_BUMP"])
-def test_every_name_of_a_normal_map(tmp_path: Path, keyword: str):
+def test_every_name_of_a_normal_map(tmp_path: Path, keyword: str) -> None:
     made = material(tmp_path, f"{keyword} -bm 0.7 n.png\n", n_png=image())
     assert made.maps["normal"].strength == 0.7
 
 
-def test_norm_goes_before_bump(tmp_path: Path):
+def test_norm_goes_before_bump(tmp_path: Path) -> None:
     mesh = load(tmp_path, "bump b.png\nnorm n.png\n", n_png=image(), b_png=image(color=(0, 0, 9)))
     assert [texture.name for texture in mesh.textures] == ["n.png"]
     assert mesh.warnings == ("a.mtl:2: 'b.png': bump gives way to 'n.png'",)
 
 
-def test_a_gray_bump_is_no_normal_map(tmp_path: Path):
+def test_a_gray_bump_is_no_normal_map(tmp_path: Path) -> None:
     mesh = load(tmp_path, "map_Bump b.png\n", b_png=image(color=(90, 90, 90)))
     assert mesh.materials[0].maps == {}
     assert mesh.textures == ()
     assert mesh.warnings == ("a.mtl:2: 'b.png': a gray height map, not a normal map: left out",)
 
 
-def test_emissive_map_without_factor_shines(tmp_path: Path):
+def test_emissive_map_without_factor_shines(tmp_path: Path) -> None:
     made = material(tmp_path, "map_Ke e.png\n", e_png=image())
     assert made.emissive == (1.0, 1.0, 1.0)
     assert "emissive" in made.maps
 
 
-def test_clamp_sets_the_wrap(tmp_path: Path):
+def test_clamp_sets_the_wrap(tmp_path: Path) -> None:
     made = material(tmp_path, "map_Kd -blendu on -clamp on w.png\n", w_png=image())
     assert made.maps["base_color"].wrap == ("clamp", "clamp")
 
 
 @pytest.mark.parametrize("option", ["-s 2 2 1", "-s 2", "-o .5 .5", "-t 1 1 1"])
-def test_options_that_move_uvs_give_a_warning(tmp_path: Path, option: str):
+def test_options_that_move_uvs_give_a_warning(tmp_path: Path, option: str) -> None:
     mesh = load(tmp_path, f"map_Kd {option} w.png\n", w_png=image())
     assert "base_color" in mesh.materials[0].maps
     assert mesh.warnings[0].startswith(f"a.mtl:2: 'w.png': {option[:2]} is not applied")
 
 
 @pytest.mark.parametrize("option", ["-s 1 1 1", "-o 0", "-t 0.0 0 0", "-blendu on -texres 512"])
-def test_options_without_effect_are_no_loss(tmp_path: Path, option: str):
+def test_options_without_effect_are_no_loss(tmp_path: Path, option: str) -> None:
     assert load(tmp_path, f"map_Kd {option} w.png\n", w_png=image()).warnings == ()
 
 
@@ -117,7 +117,7 @@ def test_options_without_effect_are_no_loss(tmp_path: Path, option: str):
         "my wood.png # as scanned",
     ],
 )
-def test_ways_to_name_an_image(tmp_path: Path, written: str):
+def test_ways_to_name_an_image(tmp_path: Path, written: str) -> None:
     (tmp_path / "my wood.png").write_bytes(image())
     mesh = load(tmp_path, f"map_Kd {written}\n")
     assert mesh.warnings == ()
@@ -127,18 +127,18 @@ def test_ways_to_name_an_image(tmp_path: Path, written: str):
 @pytest.mark.parametrize(
     "keyword", ["map_d", "map_Ns", "map_Pr", "map_Pm", "disp", "refl", "map_Ka"]
 )
-def test_unsupported_maps_are_named(tmp_path: Path, keyword: str):
+def test_unsupported_maps_are_named(tmp_path: Path, keyword: str) -> None:
     mesh = load(tmp_path, f"map_Kd w.png\n{keyword} other.png\n", w_png=image())
     (warning,) = mesh.warnings
     assert keyword.lower() in warning
     assert "other.png" in warning
 
 
-def test_base_color_repeated_as_ambient_is_no_loss(tmp_path: Path):
+def test_base_color_repeated_as_ambient_is_no_loss(tmp_path: Path) -> None:
     assert load(tmp_path, "map_Kd w.png\nmap_Ka w.png\n", w_png=image()).warnings == ()
 
 
-def test_one_image_in_several_materials_is_one_texture(tmp_path: Path):
+def test_one_image_in_several_materials_is_one_texture(tmp_path: Path) -> None:
     mesh = load_obj(
         tmp_path,
         "mtllib a.mtl\n" + TRIANGLE + "usemtl a\nf 1 2 3\nusemtl b\nf 3 2 1\n",
@@ -149,13 +149,13 @@ def test_one_image_in_several_materials_is_one_texture(tmp_path: Path):
     assert [made.maps["base_color"].texture for made in mesh.materials] == [0, 0]
 
 
-def test_materials_nobody_uses_are_not_read(tmp_path: Path):
+def test_materials_nobody_uses_are_not_read(tmp_path: Path) -> None:
     mesh = load(tmp_path, "newmtl unused\nmap_Kd broken.png\n", broken_png=b"no image")
     assert len(mesh.materials) == 1
     assert mesh.warnings == ()
 
 
-def test_missing_files_are_named_and_the_rest_goes_on(tmp_path: Path):
+def test_missing_files_are_named_and_the_rest_goes_on(tmp_path: Path) -> None:
     mesh = load(tmp_path, "Kd 1 0 0\nmap_Kd gone.png\n")
     assert mesh.warnings == ("a.mtl:3: 'gone.png': image not found",)
     assert mesh.materials[0].base_color == (1.0, 0.0, 0.0, 1.0)
@@ -164,13 +164,13 @@ def test_missing_files_are_named_and_the_rest_goes_on(tmp_path: Path):
     assert mesh.materials[0].name == "m"
 
 
-def test_a_material_that_no_file_holds(tmp_path: Path):
+def test_a_material_that_no_file_holds(tmp_path: Path) -> None:
     mesh = load_obj(tmp_path, OBJ, a_mtl="newmtl other\n")
     assert mesh.warnings == ("material 'm' is in no material file",)
 
 
 @pytest.mark.parametrize("written", ["a.mtl b.mtl", "b.mtl\nmtllib a.mtl"])
-def test_several_libraries(tmp_path: Path, written: str):
+def test_several_libraries(tmp_path: Path, written: str) -> None:
     mesh = load_obj(
         tmp_path, OBJ.replace("a.mtl", written), a_mtl="newmtl m\nKd 1 0 0\n", b_mtl="newmtl n\n"
     )
@@ -179,14 +179,14 @@ def test_several_libraries(tmp_path: Path, written: str):
 
 
 @pytest.mark.parametrize("written", ["my lib.mtl", '"my lib.mtl"'])
-def test_a_library_name_with_spaces(tmp_path: Path, written: str):
+def test_a_library_name_with_spaces(tmp_path: Path, written: str) -> None:
     (tmp_path / "my lib.mtl").write_text("newmtl m\nKd 1 0 0\n")
     mesh = load_obj(tmp_path, OBJ.replace("a.mtl", written))
     assert mesh.materials[0].base_color[:3] == (1.0, 0.0, 0.0)
 
 
 @pytest.mark.parametrize("line", ["Kd 1 nan 0", "Kd red", "d", "map_Kd -bm x w.png"])
-def test_malformed_values_name_the_line(tmp_path: Path, line: str):
+def test_malformed_values_name_the_line(tmp_path: Path, line: str) -> None:
     with pytest.raises(MeshError, match=r"a\.mtl:2: expected"):
         load(tmp_path, line + "\n", w_png=image())
 
@@ -196,7 +196,9 @@ WORDS += ["bump", "-bm", "-s", "-clamp", "on", "w.png", "gone.png", "#", "map_d"
 
 
 @given(st.lists(st.sampled_from(WORDS), max_size=15).map(" ".join))
-def test_any_words_give_a_material_or_a_mesh_error(tmp_path_factory, mtl: str):
+def test_any_words_give_a_material_or_a_mesh_error(
+    tmp_path_factory: pytest.TempPathFactory, mtl: str
+) -> None:
     found = outcome(partial(load, w_png=image()), tmp_path_factory.getbasetemp(), mtl)
     assert isinstance(found, TexturedMesh | MeshError)
 
@@ -209,6 +211,6 @@ def test_any_words_give_a_material_or_a_mesh_error(tmp_path_factory, mtl: str):
         )
     ).map(b"\n".join)
 )
-def test_any_bytes_give_materials_or_a_mesh_error(data: bytes):
+def test_any_bytes_give_materials_or_a_mesh_error(data: bytes) -> None:
     found = outcome(parse_mtl, data, "a.mtl")
     assert isinstance(found, dict) or str(found).startswith("a.mtl:")

@@ -16,21 +16,21 @@ from tests.io.files import TRIANGLE, load_obj, outcome
 NOWHERE = Folder(Path("/nonexistent"))
 
 
-def read(text: str | bytes):
+def read(text: str | bytes) -> TexturedMesh:
     return read_obj(text.encode() if isinstance(text, str) else text, "a.obj", NOWHERE)
 
 
-def corners(mesh):
+def corners(mesh: TexturedMesh) -> object:
     return mesh.corners.tolist()
 
 
-def test_positions_and_uvs_are_exactly_those_of_the_file():
+def test_positions_and_uvs_are_exactly_those_of_the_file() -> None:
     mesh = read("v 0.1 1e-7 -3\nv 1 0 0\nv 0 1 0\nvt 0.3 -1.7\nvt 5 2\nvt 0 0\nf 1/1 2/2 3/3\n")
     assert mesh.positions[0].tolist() == [0.1, 1e-7, -3.0]
     assert mesh.corner_uvs[0].tolist() == [[0.3, -1.7], [5.0, 2.0], [0.0, 0.0]]
 
 
-def test_each_corner_has_a_uv_index_of_its_own():
+def test_each_corner_has_a_uv_index_of_its_own() -> None:
     mesh = read(
         TRIANGLE + "v 1 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nvt .5 .5\nf 1/1 2/2 3/3\nf 2/4 4/2 3/1\n"
     )
@@ -38,16 +38,16 @@ def test_each_corner_has_a_uv_index_of_its_own():
     assert mesh.faces.tolist() == [[0, 1, 2], [1, 3, 2]]
 
 
-def test_negative_indices_count_back_from_the_face():
+def test_negative_indices_count_back_from_the_face() -> None:
     mesh = read(TRIANGLE + "f -3 -2 -1\nv 0 0 9\nf -4 -3 -1\n")
     assert mesh.faces.tolist() == [[0, 1, 2], [0, 1, 3]]
 
 
-def test_faces_may_come_before_their_vertices():
+def test_faces_may_come_before_their_vertices() -> None:
     assert corners(read("f 1 2 3\n" + TRIANGLE)) == corners(read(TRIANGLE + "f 1 2 3\n"))
 
 
-def test_objects_groups_and_materials_switch():
+def test_objects_groups_and_materials_switch() -> None:
     mesh = read(
         TRIANGLE + "o one\ng a b\nusemtl red\nf 1 2 3\no two\nusemtl blue sky\nf 2 3 1\n"
         "usemtl red\nf 3 1 2\n"
@@ -70,26 +70,26 @@ def test_objects_groups_and_materials_switch():
         TRIANGLE + "f 1/ 2/ 3/\n",
     ],
 )
-def test_ways_of_writing_the_same_triangle(text: str):
+def test_ways_of_writing_the_same_triangle(text: str) -> None:
     mesh = read(text)
     assert corners(mesh) == [[[0, 0, 0], [1, 0, 0], [0, 1, 0]]]
     assert not mesh.has_uv.any()
     assert mesh.warnings == ()
 
 
-def test_vertex_colors_are_left_out_with_a_warning():
+def test_vertex_colors_are_left_out_with_a_warning() -> None:
     mesh = read("v 0 0 0 .5 .5 .5\nv 1 0 0 1 1 1\nv 0 1 0 0 0 0\nf 1 2 3\n")
     assert corners(mesh) == [[[0, 0, 0], [1, 0, 0], [0, 1, 0]]]
     assert mesh.warnings == ("a.obj: left out vertex colors, first in line 1",)
 
 
-def test_faces_with_and_without_uv_mix():
+def test_faces_with_and_without_uv_mix() -> None:
     mesh = read(TRIANGLE + "vt 0 0\nf 1/1 2/1 3/1\nf 3 2 1\nf 1/1 2 3/1\n")
     assert mesh.has_uv.tolist() == [True, False, False]
     assert "1 faces have texture coordinates in some corners only" in mesh.warnings[0]
 
 
-def test_polygons_keep_their_uvs_and_material():
+def test_polygons_keep_their_uvs_and_material() -> None:
     mesh = read(
         "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nf 1/1 2/2 3/3 4/4\n"
     )
@@ -97,14 +97,14 @@ def test_polygons_keep_their_uvs_and_material():
     assert len(mesh.faces) == 2
 
 
-def test_what_is_no_surface_is_named():
+def test_what_is_no_surface_is_named() -> None:
     mesh = read(TRIANGLE + "l 1 2\nf 1 2\nf 1 2 3\nshape x\n")
     assert len(mesh.faces) == 1
     for what, line in [("'l'", 4), ("fewer than three", 5), ("'shape'", 7)]:
         assert any(what in text and f"line {line}" in text for text in mesh.warnings)
 
 
-def test_a_one_number_uv_has_v_zero():
+def test_a_one_number_uv_has_v_zero() -> None:
     mesh = read(TRIANGLE + "vt .5\nvt .25 .75 0\nf 1/1 2/2 3/2\n")
     assert mesh.uvs.tolist() == [[0.5, 0.0], [0.25, 0.75]]
 
@@ -129,13 +129,13 @@ def test_a_one_number_uv_has_v_zero():
         ("v 0 \\\n0 \\\nx\n", "a.obj:1: "),
     ],
 )
-def test_errors_name_file_and_line(text: str, expected: str):
+def test_errors_name_file_and_line(text: str, expected: str) -> None:
     with pytest.raises(MeshError) as caught:
         read(text)
     assert expected in str(caught.value)
 
 
-def test_a_binary_file_gives_few_warnings():
+def test_a_binary_file_gives_few_warnings() -> None:
     noise = b"\n".join(b"k%d 1" % number for number in range(1000))
     assert len(read(noise + b"\n" + TRIANGLE.encode() + b"f 1 2 3").warnings) == 20
 
@@ -156,12 +156,12 @@ STATEMENTS = st.lists(
 
 
 @given(st.one_of(st.binary(max_size=200), STATEMENTS))
-def test_any_bytes_give_a_mesh_or_a_mesh_error(data: bytes):
+def test_any_bytes_give_a_mesh_or_a_mesh_error(data: bytes) -> None:
     found = outcome(read, data)
     assert isinstance(found, TexturedMesh) or str(found).startswith("a.obj:")
 
 
-def test_names_of_any_encoding(tmp_path: Path):
+def test_names_of_any_encoding(tmp_path: Path) -> None:
     mesh = load_obj(
         tmp_path,
         b"mtllib a.mtl\nusemtl caf\xe9\n" + TRIANGLE.encode() + b"f 1 2 3\n",

@@ -29,20 +29,20 @@ def read(data: bytes, folder: Folder = NOWHERE) -> TexturedMesh:
     return read_ply(data, "a.ply", folder)
 
 
-def test_text():
+def test_text() -> None:
     mesh = read(text(VERTEX + FACE.format(2), SQUARE + "3 0 1 2\n3 0 2 3\n"))
     assert mesh.positions.tolist() == CORNERS
     assert mesh.faces.tolist() == [[0, 1, 2], [0, 2, 3]]
     assert not mesh.has_uv.any()
 
 
-def test_polygons():
+def test_polygons() -> None:
     mesh = read(text(VERTEX + FACE.format(2), SQUARE + "4 0 1 2 3\n3 3 2 1\n"))
     assert len(mesh.faces) == 3
 
 
 @pytest.mark.parametrize(("format", "order"), [("little", "<"), ("big", ">")])
-def test_binary_with_columns_we_do_not_know(format: str, order: str):
+def test_binary_with_columns_we_do_not_know(format: str, order: str) -> None:
     header = "comment made by hand\n" + VERTEX + "property uchar quality\n" + FACE.format(1)
     header += "property short flags\nelement edge 1\nproperty int vertex1\n"
     body = b"".join(struct.pack(order + "fffB", *corner, 7) for corner in CORNERS)
@@ -53,14 +53,14 @@ def test_binary_with_columns_we_do_not_know(format: str, order: str):
 
 
 @pytest.mark.parametrize("names", [("s", "t"), ("u", "v"), ("texture_u", "texture_v")])
-def test_vertex_uvs(names: tuple[str, str]):
+def test_vertex_uvs(names: tuple[str, str]) -> None:
     header = VERTEX + "".join(f"property float {name}\n" for name in names) + FACE.format(1)
     body = "0 0 0 .5 0\n1 0 0 1 .25\n1 1 0 0 7\n0 1 0 0 0\n3 0 1 2\n"
     mesh = read(text(header, body))
     assert mesh.corner_uvs[0].tolist() == [[0.5, 0], [1, 0.25], [0, 7]]
 
 
-def test_corner_uvs_and_their_textures(tmp_path: Path):
+def test_corner_uvs_and_their_textures(tmp_path: Path) -> None:
     (tmp_path / "my wood.png").write_bytes(image())
     header = "comment TextureFile my wood.png\ncomment TextureFile gone.png\n" + VERTEX
     header += FACE.format(3) + "property list uchar float texcoord\nproperty int texnumber\n"
@@ -74,7 +74,7 @@ def test_corner_uvs_and_their_textures(tmp_path: Path):
     assert mesh.warnings == ("a.ply: image 'gone.png' not found",)
 
 
-def test_vertex_colors_are_left_out_with_a_warning():
+def test_vertex_colors_are_left_out_with_a_warning() -> None:
     header = VERTEX + "property uchar red\n" + FACE.format(1)
     mesh = read(text(header, SQUARE.replace("\n", " 9\n") + "3 0 1 2\n"))
     assert mesh.warnings == ("a.ply: left out vertex colors",)
@@ -105,7 +105,7 @@ def test_vertex_colors_are_left_out_with_a_warning():
         (text("element vertex 2000000000\nproperty char x\n", "1"), "vertex 1: expected numbers"),
     ],
 )
-def test_errors_name_the_place(data: bytes, expected: str):
+def test_errors_name_the_place(data: bytes, expected: str) -> None:
     with pytest.raises(MeshError) as caught:
         read(data)
     assert str(caught.value).startswith("a.ply:")
@@ -113,7 +113,7 @@ def test_errors_name_the_place(data: bytes, expected: str):
 
 
 @given(st.binary(max_size=60), st.integers(0, 400), st.sampled_from(["ascii", "binary_big_endian"]))
-def test_any_bytes_give_a_mesh_or_a_mesh_error(noise: bytes, at: int, format: str):
+def test_any_bytes_give_a_mesh_or_a_mesh_error(noise: bytes, at: int, format: str) -> None:
     whole = text(VERTEX + FACE.format(1), SQUARE + "3 0 1 2\n", format)
     for data in (noise, b"ply\n" + noise, whole[:at] + noise + whole[at + len(noise) :]):
         found = outcome(read, data)

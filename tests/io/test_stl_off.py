@@ -37,7 +37,7 @@ def off(data: bytes) -> TexturedMesh:
 
 
 @pytest.mark.parametrize("data", [TEXT_STL, binary_stl(CORNERS), TEXT_STL.upper()])
-def test_stl(data: bytes):
+def test_stl(data: bytes) -> None:
     mesh = stl(data)
     assert mesh.corners.tolist() == [CORNERS]
     assert not mesh.has_uv.any()
@@ -54,7 +54,7 @@ def test_stl(data: bytes):
         OFF.replace(b"\n", b"\r\n"),
     ],
 )
-def test_off(data: bytes):
+def test_off(data: bytes) -> None:
     mesh = off(data)
     assert len(mesh.positions) == 4
     assert len(mesh.faces) == 2
@@ -72,7 +72,7 @@ def test_off(data: bytes):
         (TEXT_STL.split(b"   vertex 0 1")[0], "expected three vertices a facet"),
     ],
 )
-def test_stl_errors_name_the_place(data: bytes, expected: str):
+def test_stl_errors_name_the_place(data: bytes, expected: str) -> None:
     with pytest.raises(MeshError) as caught:
         stl(data)
     assert expected in str(caught.value)
@@ -96,14 +96,14 @@ def test_stl_errors_name_the_place(data: bytes, expected: str):
         (OFF.replace(b"4 0 1", b"2 0 1"), "a.off:8: "),
     ],
 )
-def test_off_errors_name_the_line(data: bytes, expected: str):
+def test_off_errors_name_the_line(data: bytes, expected: str) -> None:
     with pytest.raises(MeshError) as caught:
         off(data)
     assert expected in str(caught.value)
 
 
 @given(st.binary(max_size=60), st.integers(0, 150))
-def test_any_bytes_give_a_mesh_or_a_mesh_error(noise: bytes, at: int):
+def test_any_bytes_give_a_mesh_or_a_mesh_error(noise: bytes, at: int) -> None:
     for read, whole in ((stl, TEXT_STL), (stl, binary_stl(CORNERS)), (off, OFF)):
         for data in (noise, whole[:at] + noise + whole[at + len(noise) :]):
             assert isinstance(outcome(read, data), TexturedMesh | MeshError)

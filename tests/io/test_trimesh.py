@@ -21,9 +21,8 @@ def test_trimesh_reads_it(tmp_path: Path, suffix: str) -> None:
     read = list(scene.geometry.values())
     assert sum(len(part.faces) for part in read) == len(mesh.faces)
     assert np.allclose(scene.bounds, [mesh.positions.min(axis=0), mesh.positions.max(axis=0)])
-    area = np.linalg.norm(
-        np.cross(*(mesh.corners[:, i] - mesh.corners[:, 0] for i in (1, 2))), axis=1
-    )
+    a, b, c = np.moveaxis(mesh.corners, 1, 0)
+    area = np.linalg.norm(np.cross(b - a, c - a), axis=1)
     assert sum(part.area for part in read) == pytest.approx(area.sum() / 2, rel=1e-4)
     if suffix in (".glb", ".obj"):
         assert all(part.visual.uv is not None for part in read)

@@ -7,6 +7,7 @@ import struct
 from dataclasses import replace
 from io import BytesIO
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -22,6 +23,7 @@ from nispcodec.io.write.glb import glb_bytes
 from nispcodec.io.write.obj import obj_files
 from tests import tiny
 
+Json = dict[str, Any]
 PIXELS = np.arange(48, dtype=np.uint8).reshape(4, 4, 3)
 COLORS = np.array([[1, 0, 0, 1], [0, 1, 0, 1], [0, 0, 1, 1], [0.5, 0.5, 0.5, 1]], np.float32)
 
@@ -54,7 +56,7 @@ def mesh() -> TexturedMesh:
     )
 
 
-def glb_parts(data: bytes) -> tuple[dict, bytes]:
+def glb_parts(data: bytes) -> tuple[Json, bytes]:
     magic, version, length = struct.unpack_from("<4sII", data)
     assert (magic, version, length) == (b"glTF", 2, len(data))
     size, kind = struct.unpack_from("<I4s", data, 12)
@@ -66,7 +68,7 @@ def glb_parts(data: bytes) -> tuple[dict, bytes]:
     return json.loads(data[20 : 20 + size]), data[28 + size :]
 
 
-def accessor(tree: dict, binary: bytes, index: int) -> np.ndarray:
+def accessor(tree: Json, binary: bytes, index: int) -> np.ndarray:
     item = tree["accessors"][index]
     view = tree["bufferViews"][item["bufferView"]]
     assert view["byteOffset"] % 4 == 0
@@ -172,7 +174,7 @@ def test_trimesh_reads_the_same_triangles(mesh: TexturedMesh, tmp_path: Path, su
     written = write_mesh(mesh, path)
     assert written[-1] == path
     assert sorted(written) == sorted(tmp_path.iterdir())
-    loaded = trimesh.load(path, force="mesh", process=False)
+    loaded = trimesh.load_mesh(path, process=False)
     assert triangles(loaded.vertices, loaded.faces) == triangles(mesh.positions, mesh.faces)
 
 
@@ -237,7 +239,8 @@ def test_ply_doubles_seams_only(mesh: TexturedMesh, tmp_path: Path) -> None:
 @pytest.mark.parametrize("suffix", [".obj", ".ply"])
 def test_vertex_colors(mesh: TexturedMesh, tmp_path: Path, suffix: str) -> None:
     path = write_mesh(mesh, tmp_path / f"out{suffix}", COLORS)[-1]
-    loaded = trimesh.load(path, force="mesh", process=False)
+    loaded = trimesh.load_mesh(path, process=False)
+    assert isinstance(loaded.visual, trimesh.visual.ColorVisuals)
     found = np.asarray(loaded.visual.vertex_colors)[:, :3] / 255
     assert len(loaded.vertices) == 4
     nearest = np.linalg.norm(loaded.vertices[:, None] - mesh.positions, axis=2).argmin(axis=1)

@@ -2,10 +2,12 @@ from __future__ import annotations
 
 import dataclasses
 import json
+from typing import Any
 
 import numpy as np
 import pytest
 
+from nispcodec.core.arrays import Float64Array, IntArray
 from nispcodec.core.asset import TexturedMesh
 from nispcodec.core.errors import MeshError
 from nispcodec.metrics.compare import compare
@@ -13,10 +15,12 @@ from nispcodec.metrics.psnr import CEILING
 from tests.metrics.shapes import joined, moved, plane, sphere, textured
 
 FEW = 4000
+Nested = dict[str, Any]
+"""A report, whose values are numbers or groups of numbers."""
 
 
 def test_a_mesh_equals_itself() -> None:
-    report = compare(sphere(), sphere(), samples=FEW)
+    report: Nested = compare(sphere(), sphere(), samples=FEW)
     assert report["geometry"]["larger"]["max"] < 1e-12
     assert report["geometry"]["d1_psnr"] == report["geometry"]["d2_psnr"] == CEILING
     assert report["geometry"]["normal_consistency"] == pytest.approx(1)
@@ -29,7 +33,7 @@ def test_a_mesh_equals_itself() -> None:
 
 def test_parallel_planes_lie_their_gap_apart() -> None:
     gap, radius = 0.01, np.sqrt(0.5)
-    report = compare(plane(), plane(gap, cells=3), samples=FEW)
+    report: Nested = compare(plane(), plane(gap, cells=3), samples=FEW)
     for direction in ("original_to_decoded", "decoded_to_original", "larger"):
         for statistic in ("mean", "p99", "max"):
             assert report["geometry"][direction][statistic] == pytest.approx(gap / radius)
@@ -41,7 +45,7 @@ def test_parallel_planes_lie_their_gap_apart() -> None:
 
 
 def test_sphere_of_another_radius() -> None:
-    report = compare(sphere(1.0), sphere(1.03), samples=FEW)
+    report: Nested = compare(sphere(1.0), sphere(1.03), samples=FEW)
     assert report["geometry"]["larger"]["mean"] == pytest.approx(0.03, rel=0.02)
     assert report["geometry"]["normal_consistency"] > 0.999
 
@@ -54,18 +58,17 @@ def test_distances_do_not_depend_on_the_unit() -> None:
 
 def test_shift_is_caught() -> None:
     flat = moved(plane(), (0, 0, 1e-3))
-    assert compare(plane(), flat, samples=FEW)["geometry"]["larger"]["mean"] == pytest.approx(
-        1e-3 / np.sqrt(0.5)
-    )
+    report: Nested = compare(plane(), flat, samples=FEW)
+    assert report["geometry"]["larger"]["mean"] == pytest.approx(1e-3 / np.sqrt(0.5))
     ball = moved(sphere(), (1e-3, 0, 0))
-    report = compare(sphere(), ball, samples=FEW)
-    assert report["geometry"]["larger"]["mean"] == pytest.approx(5e-4, rel=0.1)
-    assert report["uv"]["larger"]["mean"] > 1e-4
+    beside: Nested = compare(sphere(), ball, samples=FEW)
+    assert beside["geometry"]["larger"]["mean"] == pytest.approx(5e-4, rel=0.1)
+    assert beside["uv"]["larger"]["mean"] > 1e-4
 
 
 def test_sliding_in_the_plane_is_no_distance_but_a_uv_error() -> None:
     slid = moved(plane(cells=1), (1e-3, 0, 0))
-    report = compare(plane(), slid, samples=FEW)
+    report: Nested = compare(plane(), slid, samples=FEW)
     assert report["geometry"]["larger"]["mean"] < 1e-5
     assert report["uv"]["larger"]["median"] == pytest.approx(1e-3)
 
@@ -73,7 +76,7 @@ def test_sliding_in_the_plane_is_no_distance_but_a_uv_error() -> None:
 def test_flipped_uv_is_caught() -> None:
     mesh = plane()
     flipped = dataclasses.replace(mesh, uvs=mesh.uvs * [1, -1] + [0, 1])
-    report = compare(mesh, flipped, samples=FEW)
+    report: Nested = compare(mesh, flipped, samples=FEW)
     assert report["uv"]["larger"]["mean"] == pytest.approx(0.5, rel=0.05)
     assert report["geometry"]["larger"]["max"] < 1e-12
     assert report["color"]["psnr"] < 10
@@ -83,7 +86,7 @@ def test_one_chart_moved_in_the_atlas_is_caught() -> None:
     whole = joined(plane(), moved(plane(), (1, 0, 0)))
     uvs = whole.uvs.copy()
     uvs[: len(uvs) // 2] += [0.25, 0]
-    report = compare(whole, dataclasses.replace(whole, uvs=uvs), samples=FEW)
+    report: Nested = compare(whole, dataclasses.replace(whole, uvs=uvs), samples=FEW)
     assert report["uv"]["larger"]["mean"] == pytest.approx(0.125, rel=0.1)
 
 
@@ -95,10 +98,10 @@ class Halves:
     def __init__(self, border: float) -> None:
         self.border = border
 
-    def charts(self, points):
+    def charts(self, points: Float64Array) -> IntArray:
         return (points[:, 0] > self.border).astype(np.int32)
 
-    def uv(self, points, *, charts):
+    def uv(self, points: Float64Array, *, charts: IntArray) -> Float64Array:
         return np.stack([points[:, 0] - 10 - charts, points[:, 1]], axis=1)
 
 
@@ -112,14 +115,14 @@ def test_chart_accuracy_asks_in_the_world_frame() -> None:
 
 def test_missing_part_shows_only_from_the_original() -> None:
     whole = joined(sphere(), moved(sphere(), (3, 0, 0)))
-    report = compare(whole, sphere(), samples=FEW)
+    report: Nested = compare(whole, sphere(), samples=FEW)
     assert report["geometry"]["decoded_to_original"]["max"] < 1e-12
     assert report["geometry"]["original_to_decoded"]["mean"] > 0.1
 
 
 def test_hidden_walls_are_reported_and_do_not_count() -> None:
     whole = joined(sphere(1.0), sphere(0.5))
-    report = compare(whole, sphere(1.0), samples=FEW)
+    report: Nested = compare(whole, sphere(1.0), samples=FEW)
     assert report["surface"]["hidden"] == pytest.approx(0.2, abs=0.02)
     assert report["geometry"]["larger"]["max"] < 1e-12
 
@@ -140,7 +143,7 @@ def test_report_is_json() -> None:
 def test_without_uv_there_is_no_uv_group() -> None:
     mesh = sphere()
     bare = dataclasses.replace(mesh, uv_faces=np.full_like(mesh.uv_faces, -1))
-    report = compare(bare, mesh, samples=FEW)
+    report: Nested = compare(bare, mesh, samples=FEW)
     assert "uv" not in report
     assert "parameterization" not in report
 

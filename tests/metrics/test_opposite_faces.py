@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
 
@@ -49,7 +51,7 @@ def test_the_closest_point_is_on_the_face_that_looks_there() -> None:
 
 def test_a_flag_with_a_thickness_keeps_the_uvs_of_its_sides() -> None:
     original, thick = flag(0), flag(0.008)
-    report = compare(original, thick, samples=2000)
+    report: dict[str, Any] = compare(original, thick, samples=2000)
     assert report["uv"]["larger"]["mean"] == pytest.approx(0, abs=1e-12)
     radius = frame_of(original).radius
     assert report["geometry"]["larger"]["mean"] == pytest.approx(0.004 / radius)

@@ -5,6 +5,8 @@ import dataclasses
 import numpy as np
 import pytest
 
+from nispcodec.core.arrays import Float64Array, Int64Array, IntArray
+from nispcodec.core.asset import TexturedMesh
 from nispcodec.core.errors import QueryError
 from nispcodec.metrics.charts import chart_accuracy
 from nispcodec.metrics.color import color_at
@@ -16,7 +18,7 @@ from nispcodec.metrics.surface import Surface, frame_of
 from tests.metrics.shapes import joined, moved, plane, sphere, textured
 
 
-def surface_of(mesh):
+def surface_of(mesh: TexturedMesh) -> Surface:
     return Surface.of(mesh, frame_of(mesh))
 
 
@@ -117,14 +119,23 @@ class Halves:
     def __init__(self, border: float = 0.0, textured: bool = True) -> None:
         self.border, self.textured = border, textured
 
-    def charts(self, points):
+    def charts(self, points: Float64Array) -> IntArray:
         return (points[:, 0] >= self.border).astype(np.int32)
 
-    def uv(self, points, *, charts):
+    def uv(self, points: Float64Array, *, charts: IntArray) -> Float64Array:
         return (points[:, :2] + np.stack([0 * charts, charts], axis=1)) * self.textured
 
 
-def halves_points():
+class AlikeHalves(Halves):
+    """Both charts have the UV (x, y), and one material."""
+
+    chart_materials = np.array([0, 0])
+
+    def uv(self, points: Float64Array, *, charts: IntArray) -> Float64Array:
+        return points[:, :2]
+
+
+def halves_points() -> tuple[Float64Array, Int64Array]:
     """Points, and the side of x = 0 that they are on."""
     points = np.random.default_rng(0).uniform(-1, 1, (4000, 3))
     return points, (points[:, 0] >= 0).astype(int)
@@ -153,10 +164,7 @@ def test_without_uv_the_material_decides() -> None:
 
 def test_charts_that_agree_on_the_uv_are_both_right() -> None:
     points, side = halves_points()
-    model = Halves(border=0.5)
-    model.uv = lambda points, *, charts: points[:, :2]
-    model.chart_materials = np.array([0, 0])
-    assert chart_accuracy(model, points, points[:, :2], 0 * side) == 1
+    assert chart_accuracy(AlikeHalves(border=0.5), points, points[:, :2], 0 * side) == 1
 
 
 def test_psnr_of_known_error_and_of_none() -> None:

@@ -6,6 +6,7 @@ import numpy as np
 import PIL.Image
 import pytest
 
+from nispcodec.core.arrays import Float64Array, Int64Array
 from nispcodec.core.asset import TexturedMesh
 from nispcodec.geometry.charts import split_charts
 from nispcodec.io.cleanup import clean
@@ -17,7 +18,7 @@ def mug() -> TexturedMesh:
     return sample_asset()
 
 
-def test_it_is_what_the_readme_promises(mug: TexturedMesh):
+def test_it_is_what_the_readme_promises(mug: TexturedMesh) -> None:
     assert 5_000 <= len(mug.faces) <= 10_000
     assert len(split_charts(mug)) == 7
     assert [material.name for material in mug.materials] == ["glaze", "wood"]
@@ -25,11 +26,11 @@ def test_it_is_what_the_readme_promises(mug: TexturedMesh):
     assert mug.has_uv.all()
 
 
-def test_it_needs_no_cleaning(mug: TexturedMesh):
+def test_it_needs_no_cleaning(mug: TexturedMesh) -> None:
     assert clean(mug, "mug").warnings == ()
 
 
-def test_bodies_are_closed_and_face_outwards(mug: TexturedMesh):
+def test_bodies_are_closed_and_face_outwards(mug: TexturedMesh) -> None:
     faces = mug.faces.astype(np.int64)
     edges = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
     there, back = ({tuple(edge) for edge in way} for way in (edges, edges[:, ::-1]))
@@ -42,7 +43,7 @@ def test_bodies_are_closed_and_face_outwards(mug: TexturedMesh):
         assert volumes[np.isin(charts, body)].sum() > 1
 
 
-def test_no_two_faces_share_a_texel(mug: TexturedMesh):
+def test_no_two_faces_share_a_texel(mug: TexturedMesh) -> None:
     a, b, c = np.moveaxis(mug.corner_uvs, 1, 0)
     u, v = b - a, c - a
     areas = (u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0]) / 2
@@ -55,7 +56,7 @@ def test_no_two_faces_share_a_texel(mug: TexturedMesh):
         assert covered.mean() > 0.4
 
 
-def _coverage(triangles, size: int = 256):
+def _coverage(triangles: Float64Array, size: int = 256) -> Int64Array:
     """How many triangles hold each texel center; centers are set off the triangles' edges."""
     count = np.zeros((size, size), dtype=int)
     for triangle in triangles * size - (0.5123, 0.4877):
@@ -69,7 +70,7 @@ def _coverage(triangles, size: int = 256):
     return count
 
 
-def test_textures_are_pngs_of_512_and_always_the_same(mug: TexturedMesh):
+def test_textures_are_pngs_of_512_and_always_the_same(mug: TexturedMesh) -> None:
     assert [texture.data for texture in sample_asset().textures] == [
         texture.data for texture in mug.textures
     ]
@@ -78,7 +79,7 @@ def test_textures_are_pngs_of_512_and_always_the_same(mug: TexturedMesh):
         assert (opened.format, opened.size) == ("PNG", (512, 512))
 
 
-def test_the_normal_map_holds_unit_vectors_that_point_out(mug: TexturedMesh):
+def test_the_normal_map_holds_unit_vectors_that_point_out(mug: TexturedMesh) -> None:
     normals = mug.textures[mug.materials[1].maps["normal"].texture]
     vectors = np.asarray(PIL.Image.open(io.BytesIO(normals.data))) / 127.5 - 1
     np.testing.assert_allclose(np.linalg.norm(vectors, axis=2), 1, atol=0.02)

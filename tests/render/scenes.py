@@ -29,6 +29,6 @@ def with_maps(mesh: TexturedMesh, filter: str = "nearest", **maps: object) -> Te
     return dataclasses.replace(mesh, materials=(Material(maps=used),), textures=textures)
 
 
-def square(**maps: object) -> TexturedMesh:
+def square(filter: str = "nearest", **maps: object) -> TexturedMesh:
     """The unit square facing +z, with maps of pixels."""
-    return with_maps(plane(), **maps)
+    return with_maps(plane(), filter, **maps)

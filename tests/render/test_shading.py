@@ -5,7 +5,7 @@ import dataclasses
 import numpy as np
 import pytest
 
-from nispcodec.core.asset import Material
+from nispcodec.core.asset import Material, TexturedMesh
 from nispcodec.render.camera import Camera
 from nispcodec.render.maps import Maps
 from nispcodec.render.picture import Eye
@@ -19,7 +19,9 @@ FLAT, RIGHT, UP = (128, 128, 255), (218, 128, 218), (128, 218, 218)
 """Normals straight up, and leaning by 45 degrees to where u grows and to where v grows."""
 
 
-def normal_at_middle(mesh: object, camera: Camera = FRONT, normal_map: bool = True) -> np.ndarray:
+def normal_at_middle(
+    mesh: TexturedMesh, camera: Camera = FRONT, normal_map: bool = True
+) -> np.ndarray:
     scene = MeshScene(mesh, UNIT)
     eye = Eye(scene, Maps(scene.textures), camera, 17, normal_map)
     return eye.pixels().normals.reshape(17, 17, 3)[8, 8]

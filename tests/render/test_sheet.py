@@ -40,7 +40,9 @@ def test_a_model_beside_its_own_mesh(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(model, "to_mesh", lambda: mesh)
     found = sheet(mesh, model, 48, "title", heard.append)
     assert [each.stage for each in heard] == ["views", "close-ups", "UV layouts", "numbers"]
-    assert found.report["pictures"]["psnr"] > 25
+    psnr = found.report["pictures"]["psnr"]
+    assert isinstance(psnr, float)
+    assert psnr > 25
     assert "charts" in found.report
 
 

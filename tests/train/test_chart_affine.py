@@ -29,7 +29,8 @@ def test_a_network_of_zeros_answers_with_its_frames(mirror: int) -> None:
     seen = np.where([mirror >> axis & 1 for axis in range(3)], np.abs(POINTS), POINTS)
     uvs = uvs_of(seen).astype(np.float32)
     module = Module(spec, "cpu")
-    module.place_chart_affine(*map(torch.from_numpy, (POINTS, CHARTS, uvs)), 1e-4)
+    points, charts, wanted = map(torch.from_numpy, (POINTS, CHARTS, uvs))
+    module.place_chart_affine(points, charts, wanted, 1e-4)
     tensors = {name: np.zeros(shape, np.float32) for name, shape in spec.shapes.items()}
     placed = module.network().tensors
     network = Network(spec, tensors | {name: placed[name] for name in ("slopes", "offsets")})

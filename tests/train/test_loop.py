@@ -219,7 +219,7 @@ def test_matrices_find_the_minimum_of_a_badly_scaled_quadratic(
 ) -> None:
     """Two matrices of one shape and one of another, in no order: all are moved together."""
     torch.manual_seed(0)
-    first, second, third = torch.arange(54).split([24, 24, 6])
+    first, second, third = torch.split(torch.arange(54), [24, 24, 6])
     matrices = [(second.view(4, 6), 1.0), (first.view(4, 6), 1.0), (third.view(3, 2), 0.5)]
     target = torch.randn(54)
     scales = torch.cat([torch.logspace(-decades, 0, 6).repeat(8), torch.ones(6)])

@@ -23,6 +23,7 @@ from nispcodec.train.prune import (
     STRATEGIES,
     Mask,
     Pruning,
+    Strategy,
     density,
     everything,
     large_final,
@@ -73,7 +74,7 @@ def test_a_round_prunes_nothing_that_is_not_within_the_mask_before(strategy: str
 
 
 @pytest.mark.parametrize("strategy", [smallest, large_final])
-def test_a_matrix_keeps_its_largest(strategy) -> None:
+def test_a_matrix_keeps_its_largest(strategy: Strategy) -> None:
     values = weights()
     for name, kept in strategy(values, everything(SPEC), 0.5).items():
         assert np.abs(values[name])[kept].min() >= np.abs(values[name])[~kept].max()
@@ -131,7 +132,9 @@ def test_a_rate_for_all_or_for_each() -> None:
         ("smallest", 0.5, 0, "rounds: expected 1 or more, found 0"),
     ],
 )
-def test_what_makes_no_sense_is_an_error(strategy: str, rate, rounds: int, said: str) -> None:
+def test_what_makes_no_sense_is_an_error(
+    strategy: str, rate: float | dict[str, float], rounds: int, said: str
+) -> None:
     with pytest.raises(NispError, match=said):
         prunings(strategy, rate, rounds)
 
@@ -163,7 +166,7 @@ def test_a_pruned_weight_has_no_gradient_and_no_place() -> None:
     mask = {name: np.zeros_like(kept) for name, kept in everything(SPEC).items()}
     mask["weight.1"][0, 0] = True
     module.prune(mask)
-    module(torch.rand(9, 3), torch.arange(9) % 4).sum().backward()
+    torch.autograd.backward(module(torch.rand(9, 3), torch.arange(9) % 4).sum())
     assert module.weights.grad is not None
     assert module.kept is not None
     assert (module.weights.grad[module.kept == 0] == 0).all()
@@ -183,7 +186,8 @@ def test_every_round_starts_from_the_same_weights() -> None:
 
 @pytest.mark.parametrize("strategy", STRATEGIES)
 def test_a_ticket_is_judged_by_the_round_before_or_the_first(strategy: str) -> None:
-    task, made = sdf_task(), []
+    task = sdf_task()
+    made: list[tuple[float, Mask, Network]] = []
 
     def trained(mask: Mask, rate: float) -> Network:
         made.append((rate, mask, tiny.random_network(task.spec, len(made))))

@@ -19,7 +19,7 @@ def encode(values: Uint32Array, widths: Uint8Array) -> bytes:
 
 
 def decode(reader: Reader, name: str, widths: Uint8Array) -> Uint32Array:
-    """The inverse of `encode`; the bits after the last integer must be zero."""
+    """The inverse of `encode`. Raises FormatError where a bit after the last integer is not 0."""
     ends = np.cumsum(widths, dtype=np.int64)
     total = int(ends[-1]) if len(ends) else 0
     data = np.frombuffer(reader.take((total + 7) // 8, name), np.uint8)

@@ -19,7 +19,10 @@ def encode(values: AnyArray) -> bytes:
 
 
 def decode(reader: Reader, shape: tuple[int, int], symbols: bool) -> AnyArray:
-    """Payload -> (rows, columns) float32, or int32 where `symbols`."""
+    """Payload -> (rows, columns) float32, or int32 where `symbols`.
+
+    Raises FormatError for positions outside the matrix.
+    """
     count = reader.varint("count", shape[0] * shape[1])
     rows = np.cumsum(indices.decode(reader, "row step", count, shape[0] - 1))
     if count and rows[-1] >= shape[0]:

@@ -13,5 +13,8 @@ def encode(values: AnyArray) -> bytes:
 
 
 def decode(reader: Reader, shape: tuple[int, int], symbols: bool) -> AnyArray:
-    """Payload -> (rows, columns) float32, or int32 where `symbols`."""
+    """Payload -> (rows, columns) float32, or int32 where `symbols`.
+
+    Raises FormatError for positions outside the matrix.
+    """
     return csr.decode(reader, (shape[1], shape[0]), symbols).T

@@ -18,7 +18,10 @@ def encode(values: AnyArray) -> bytes:
 
 
 def decode(reader: Reader, shape: tuple[int, int], symbols: bool) -> AnyArray:
-    """Payload -> (rows, columns) float32, or int32 where `symbols`."""
+    """Payload -> (rows, columns) float32, or int32 where `symbols`.
+
+    Raises FormatError for positions outside the matrix.
+    """
     counts = indices.decode(reader, "row count", shape[0], shape[1])
     gaps = indices.decode(reader, "column gap", int(counts.sum()), shape[1] - 1)
     columns = indices.from_gaps(reader, counts, gaps, shape[1])

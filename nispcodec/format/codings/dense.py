@@ -13,5 +13,8 @@ def encode(values: AnyArray) -> bytes:
 
 
 def decode(reader: Reader, shape: tuple[int, int], symbols: bool) -> AnyArray:
-    """Payload -> (rows, columns) float32, or int32 where `symbols`."""
+    """Payload -> (rows, columns) float32, or int32 where `symbols`.
+
+    Raises FormatError for too few bytes.
+    """
     return numbers.decode(reader, shape[0] * shape[1], symbols).reshape(shape)

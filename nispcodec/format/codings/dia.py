@@ -23,7 +23,10 @@ def encode(values: AnyArray) -> bytes:
 
 
 def decode(reader: Reader, shape: tuple[int, int], symbols: bool) -> AnyArray:
-    """Payload -> (rows, columns) float32, or int32 where `symbols`."""
+    """Payload -> (rows, columns) float32, or int32 where `symbols`.
+
+    Raises FormatError for diagonals outside the matrix.
+    """
     number = _diagonals(shape)
     last = shape[0] + shape[1] - 2
     count = reader.varint("diagonal count", last + 1)

@@ -1,4 +1,4 @@
-"""Entropy: runs of tensors under a curve each, all in one rANS stream at the end of the section.
+"""Entropy: runs of tensors, each with a frequency model, in one rANS stream at the section's end.
 
 A stream for each of the small tensors of a network would cost 2 percent, and tables of frequencies
 more than that. A run's own record is its header.
@@ -22,7 +22,7 @@ Coded = tuple[AnyArray, float]
 
 
 class SymbolRun:
-    """Values to write under one curve: (n,) float32 weights or int32 symbols."""
+    """Values to write under one frequency model: (n,) float32 weights or int32 symbols."""
 
     def __init__(self, values: AnyArray) -> None:
         self._prefix, self._integers = signed.encode(values)
@@ -39,16 +39,16 @@ class SymbolRun:
         return frequency_model.fit(np.bincount(self._cell, minlength=self._cells + 1))
 
     def header(self) -> bytes:
-        """The record: what is needed to read the values."""
+        """The bytes of the run's record: number kind, largest magnitude, frequency model."""
         header = self._prefix + varint(self._limit)
         return header + self._fitted[0].encode() if self._limit else header
 
     def streamed(self) -> float:
-        """Bytes that the run takes in the stream."""
+        """Bytes that the run takes in the stream, by an ideal coder."""
         return self._fitted[1] / 8 + len(self.rest()) if self._limit else 0.0
 
     def tokens(self) -> tuple[list[int], list[int]]:
-        """Start and frequency of every value's token."""
+        """Start and frequency of every value's token, of `rans.SCALE` in all."""
         if not self._limit:
             return [], []
         starts = self._fitted[0].starts(self._cells)
@@ -56,14 +56,14 @@ class SymbolRun:
         return starts[token].tolist(), np.diff(starts)[token].tolist()
 
     def rest(self) -> bytes:
-        """What the tokens leave open of the values that are not zero."""
+        """The low bits that tokens leave open, for every value that is not zero."""
         above = (self._magnitudes[self._magnitudes > 0] - 1).astype(np.uint32)
         below = above & np.uint32((1 << self._open) - 1)
         return bits.encode(below, np.full(len(below), self._open, np.uint8))
 
 
 def encode(runs: list[SymbolRun]) -> bytes:
-    """The stream: rANS words of all tokens, then what they leave open, run after run."""
+    """The bytes of the stream: rANS words of all tokens, then the bits they leave open."""
     starts: list[int] = []
     frequencies: list[int] = []
     for run in runs:
@@ -75,7 +75,14 @@ def encode(runs: list[SymbolRun]) -> bytes:
 
 @dataclass(frozen=True)
 class RunHeader:
-    """A run's record: how many values of which kind (None: symbols), how large, which curve."""
+    """A run's record, as read.
+
+    count   how many values
+    kind    number kind of floats, None for symbols
+    top     largest pattern of floats (see `signed`)
+    limit   largest magnitude of the integers
+    model   their frequency model, None where all are 0
+    """
 
     count: int
     kind: str | None
@@ -85,26 +92,29 @@ class RunHeader:
 
     @property
     def coded(self) -> int:
-        """How many tokens of the stream are its."""
+        """How many tokens of the stream are the run's."""
         return self.count if self.limit else 0
 
     @cached_property
     def starts(self) -> Int64Array:
-        """Where the tokens' frequencies begin; one token, zero, without curve."""
+        """(tokens + 1,) int64: where the frequencies begin; without model one token, zero."""
         if self.model is None:
             return np.array([0, rans.SCALE])
         return self.model.starts(frequency_model.cells(self.limit)[0])
 
 
 def read_header(reader: Reader, count: int, symbols: bool) -> RunHeader:
-    """A run's record."""
+    """The record of a run of `count` values. Raises FormatError at the reader's place."""
     kind, top = (None, MAX_SYMBOL) if symbols else signed.read_top(reader)
     limit = reader.varint("limit", top)
     return RunHeader(count, kind, top, limit, frequency_model.decode(reader) if limit else None)
 
 
 def decode(reader: Reader, headers: list[RunHeader]) -> list[Coded]:
-    """The stream -> (n,) float32 weights or int32 symbols of every run, and the bits it took."""
+    """The stream -> (n,) float32 weights or int32 symbols of every run, and the bits it took.
+
+    Raises FormatError at the reader's place.
+    """
     tokens = rans.decode(reader, [(header.coded, header.starts) for header in headers])
     ends = np.cumsum([header.coded for header in headers], dtype=np.int64)
     parts = np.split(tokens, ends)[:-1]

@@ -24,7 +24,7 @@ _HAS_ZEROS = 0x80
 
 @dataclass(frozen=True)
 class FrequencyModel:
-    """Student's curve of 2^(tail + 1) - 1 degrees of freedom, in half-octave steps of width.
+    """Student's t distribution of 2^(tail + 1) - 1 degrees of freedom, in half-octave widths.
 
     narrowness  0 to 31
     tail        0 to 3: from heavy to nearly normal
@@ -41,14 +41,17 @@ class FrequencyModel:
         return bytes([byte | _HAS_ZEROS, self.zeros]) if self.zeros else bytes([byte])
 
     def starts(self, cells: int) -> Int64Array:
-        """(2 cells + 2,): where the frequency of each token, from -cells up, begins; the end."""
+        """(2 cells + 2,) int64: where the frequency of each token begins, and the end.
+
+        Tokens run from -cells to cells; the end is `rans.SCALE`.
+        """
         half = frequencies(cells, np.array([self.narrowness]), self.tail, self.zeros)[0]
         both = np.concatenate([half[:0:-1], half])
         return np.concatenate([[0], np.cumsum(both)])
 
 
 def decode(reader: Reader) -> FrequencyModel:
-    """The inverse of `FrequencyModel.encode`."""
+    """The inverse of `FrequencyModel.encode`. Raises FormatError for a share of zeros that is 0."""
     byte = reader.take(1, "model")[0]
     zeros = reader.take(1, "zeros")[0] if byte & _HAS_ZEROS else 0
     if byte & _HAS_ZEROS and not zeros:
@@ -57,13 +60,16 @@ def decode(reader: Reader) -> FrequencyModel:
 
 
 def cells(limit: int) -> tuple[int, int]:
-    """Of magnitudes up to `limit`: on how many cells above zero, how many bits each leaves open."""
+    """How many cells hold magnitudes from 1 to `limit`, and how many bits a cell leaves open."""
     open_bits = (max(limit - 1, 0) // MAX_CELLS).bit_length()
     return (limit + (1 << open_bits) - 1) >> open_bits, open_bits
 
 
 def fit(counts: Int64Array) -> tuple[FrequencyModel, float]:
-    """(cells + 1,) how often 0 and each magnitude, of either sign -> the best curve, its bits."""
+    """The frequency model that takes the fewest bits for a run, and how many.
+
+    counts (cells + 1,): how often 0 and each cell, of either sign, occur.
+    """
     total = int(counts.sum())
     share = min(max(round(256 * int(counts[0]) / total), 1), 255)
     used = np.flatnonzero(counts)
@@ -81,7 +87,10 @@ def fit(counts: Int64Array) -> tuple[FrequencyModel, float]:
 
 
 def frequencies(cells: int, narrowness: Int64Array, tail: int, zeros: int) -> Int64Array:
-    """(n,) -> (n, cells + 1) frequencies of 0 and of each cell, either sign; with both, `SCALE`."""
+    """Frequencies (n, cells + 1) of 0 and of each cell, for each narrowness (n,).
+
+    A cell's is that of either sign: 0 and both signs of all cells add up to `rans.SCALE`.
+    """
     ratio = ((2 + narrowness % 2) << narrowness // 2)[:, None]
     wide = 4 * cells * cells << tail
     height = (wide << _ONE_BITS) // (wide + ratio * np.arange(cells + 1) ** 2)

@@ -20,7 +20,7 @@ def encode(values: Int64Array, maximum: int) -> bytes:
 
 
 def decode(reader: Reader, name: str, count: int, maximum: int) -> Int64Array:
-    """The inverse of `encode`; every integer is checked."""
+    """The inverse of `encode`. Raises FormatError for an integer beyond `maximum`."""
     kind = _kind(maximum)
     values = np.frombuffer(reader.take(count * kind.itemsize, name), kind).astype(np.int64)
     if count and values.max() > maximum:
@@ -43,7 +43,7 @@ def to_gaps(mask: BoolArray) -> Int64Array:
 
 
 def from_gaps(reader: Reader, counts: Int64Array, gaps: Int64Array, columns: int) -> Int64Array:
-    """(rows,) counts and (n,) gaps -> (n,) columns, checked to lie inside the matrix."""
+    """Counts (rows,) and gaps (n,) -> columns (n,). Raises FormatError outside the matrix."""
     ends = np.cumsum(gaps + 1)
     before = np.concatenate([[0], ends])[np.cumsum(counts) - counts]
     found = ends - np.repeat(before, counts) - 1

@@ -34,7 +34,10 @@ def encode(values: AnyArray) -> bytes:
 
 
 def decode(reader: Reader, count: int, symbols: bool) -> AnyArray:
-    """Bytes -> (n,) float32, or int32 where `symbols`; only kinds of that sort are allowed."""
+    """Bytes -> (count,) float32, or int32 where `symbols`.
+
+    Raises FormatError for a kind of the other sort, and for too few bytes.
+    """
     kinds = INTEGERS if symbols else FLOATS
     name = reader.member("number kind", NUMBERS, tuple(kinds))
     values = np.frombuffer(reader.take(count * kinds[name].itemsize, "values"), kinds[name])

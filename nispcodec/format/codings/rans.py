@@ -32,12 +32,12 @@ TURNS_BITS = 9
 
 
 def lanes(count: int) -> int:
-    """How many states a stream of so many tokens has."""
+    """How many states take turns in a stream of `count` tokens."""
     return count >> TURNS_BITS if count >= LONG else 1
 
 
 def encode(starts: list[int], frequencies: list[int]) -> bytes:
-    """Start and frequency of every token -> the words, little-endian; none without tokens."""
+    """Start and frequency of every token -> 16-bit words, little-endian; none without tokens."""
     if not starts:
         return b""
     count = lanes(len(starts))
@@ -56,7 +56,10 @@ def encode(starts: list[int], frequencies: list[int]) -> bytes:
 
 
 def decode(reader: Reader, runs: Runs) -> Int64Array:
-    """The inverse of `encode` for runs of tokens under one table: all tokens, one after another."""
+    """The inverse of `encode`: the tokens (n,) int64 of all runs, each with a table of its own.
+
+    Raises FormatError for too few words and for another last state than the first of `encode`.
+    """
     count = sum(length for length, _ in runs)
     if not count:
         return np.empty(0, np.int64)

@@ -6,7 +6,11 @@ from nispcodec.core.errors import FormatError
 
 
 class Reader:
-    """Reads `data` of `section` from front to back; `path` says where we are, for the errors."""
+    """Reads `data` of `section` from front to back; `path` says where we are, for the errors.
+
+    Every method takes the name of the field that it reads. Raises FormatError, naming section, path
+    and field, for bytes that are missing or out of range.
+    """
 
     def __init__(self, section: str, data: bytes | memoryview) -> None:
         self.section = section
@@ -23,7 +27,7 @@ class Reader:
         return self._data[self.position - count : self.position]
 
     def rest(self) -> memoryview:
-        """All that is left, without moving on."""
+        """All bytes that are left; the position stays."""
         return self._data[self.position :]
 
     def member(self, name: str, members: tuple[str, ...], allowed: tuple[str, ...]) -> str:
@@ -35,7 +39,7 @@ class Reader:
         return member
 
     def varint(self, name: str, maximum: int) -> int:
-        """An unsigned LEB128 integer in its shortest form, at most `maximum` (below 2^35)."""
+        """An unsigned integer up to `maximum` (below 2^35), LEB128 in its shortest form."""
         value = 0
         for shift in range(0, 35, 7):
             byte = self.take(1, name)[0]
@@ -47,17 +51,17 @@ class Reader:
         raise self.error(name, "an integer of at most 5 bytes", "more")
 
     def finish(self) -> None:
-        """Raises when bytes are left."""
+        """Raises FormatError when bytes are left."""
         if self.position != len(self._data):
             raise self.error("end", self.position, len(self._data))
 
     def error(self, name: str, expected: object, found: object) -> FormatError:
-        """An error at the current place."""
+        """An error at the current place, to be raised by the caller."""
         return FormatError(self.section, f"{self.path}{name}", expected, found)
 
 
 def varint(value: int) -> bytes:
-    """Unsigned LEB128."""
+    """A non-negative integer -> unsigned LEB128 (DWARF 5, 7.6) in its shortest form."""
     out = bytearray()
     while value >= 0x80:
         out.append(value & 0x7F | 0x80)

@@ -19,13 +19,16 @@ from nispcodec.format.codings.reader import Reader
 
 
 class Codec(Protocol):
-    """What a module of a coding offers."""
+    """The functions of a module that codes one tensor."""
 
     def encode(self, values: AnyArray) -> bytes:
         """(rows, columns) float32 weights or int32 symbols -> payload."""
 
     def decode(self, reader: Reader, shape: tuple[int, int], symbols: bool) -> AnyArray:
-        """Payload -> (rows, columns) float32, or int32 where `symbols`."""
+        """Payload -> (rows, columns) float32, or int32 where `symbols`.
+
+        Raises FormatError at the reader's place.
+        """
 
 
 @dataclass(frozen=True)

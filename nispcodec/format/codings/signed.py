@@ -19,7 +19,7 @@ _INFINITIES = {"float16": 0x7C00, "float32": 0x7F800000}
 
 
 def encode(values: AnyArray) -> tuple[bytes, Int64Array]:
-    """(n,) float32 weights or int32 symbols -> what the decoder needs to know, (n,) integers."""
+    """(n,) float32 weights or int32 symbols -> what the decoder needs to know, (n,) int64."""
     if values.dtype.kind != "f":
         return b"", values.astype(np.int64)
     kind = smallest(values)
@@ -32,13 +32,13 @@ def encode(values: AnyArray) -> tuple[bytes, Int64Array]:
 
 
 def read_top(reader: Reader) -> tuple[str, int]:
-    """Number kind and largest pattern of a run of floats."""
+    """Number kind and largest pattern of a run of floats. Raises FormatError for other bytes."""
     kind = reader.member("number kind", NUMBERS, tuple(FLOATS))
     return kind, reader.varint("top", _INFINITIES[kind] - 1)
 
 
 def decode_floats(kind: str, top: int, integers: Int64Array) -> Float32Array:
-    """(n,) integers of magnitudes up to `top` -> (n,) weights."""
+    """(n,) integers of magnitudes up to `top` -> (n,) float32 weights of a number kind."""
     pattern = np.where(integers != 0, top + 1 - np.abs(integers), 0)
     stored = np.where(integers < 0, pattern | _SIGNS[kind], pattern).astype(_PATTERNS[kind])
     values: AnyArray = stored.view(FLOATS[kind])

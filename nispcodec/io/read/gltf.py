@@ -33,10 +33,10 @@ LARGEST = 20_000_000
 
 
 def read_gltf(data: bytes, name: str, folder: Folder) -> TexturedMesh:
-    """Parse a .gltf or .glb file, and the buffers and images that it names.
+    """Parse a .gltf or .glb file, and the buffers and images that it names in `folder`.
 
-    Node transforms are applied; UVs get their origin bottom-left. Errors name the file `name` and
-    the JSON path.
+    Node transforms are applied; UVs get their origin bottom-left. Raises MeshError, naming the file
+    `name` and the JSON path, for whatever glTF 2.0 does not allow, and for compressed meshes.
     """
     text, binary = split_glb(data, name)
     root = parse_json(text, name)

@@ -1,4 +1,4 @@
-"""The binary side of glTF 2.0: containers, buffers, accessors, every reach checked first."""
+"""The binary side of glTF 2.0: containers, buffers, accessors; every range is checked first."""
 
 from __future__ import annotations
 
@@ -29,7 +29,10 @@ _MOST_ZEROS = 10_000_000
 
 
 def split_glb(data: bytes, name: str) -> tuple[bytes, bytes | None]:
-    """The JSON text and the binary chunk of a GLB file; other data is JSON text itself."""
+    """The JSON text and the binary chunk, if any, of a GLB file; other data is JSON text itself.
+
+    Raises MeshError, naming the file `name`, for a malformed container.
+    """
     if not data.startswith(b"glTF"):
         return data, None
     if len(data) < 12:
@@ -61,7 +64,10 @@ def _chunks(data: bytes, name: str) -> list[tuple[int, bytes]]:
 
 
 def read_uri(uri: str, folder: Folder, place: str) -> bytes | None:
-    """The bytes behind a data URI or a file name; None when there is no such file."""
+    """The bytes behind a data URI or a file name; None when there is no such file.
+
+    Raises MeshError, naming `place`, for a file that cannot be read and for malformed base64.
+    """
     if not uri.startswith("data:"):
         path = folder.find(unquote(uri)) or folder.find(uri)
         return None if path is None else folder.read(path)
@@ -75,7 +81,10 @@ def read_uri(uri: str, folder: Folder, place: str) -> bytes | None:
 
 
 class Buffers:
-    """The buffers of one document, read when first used."""
+    """The buffers of one glTF document, read when first used.
+
+    Raises MeshError, naming the JSON path, in every method that finds the document malformed.
+    """
 
     def __init__(self, root: Element, binary: bytes | None, folder: Folder) -> None:
         self._root = root
@@ -84,7 +93,7 @@ class Buffers:
         self._read: dict[int, bytes] = {}
 
     def view(self, index: int) -> memoryview:
-        """The bytes of a buffer view."""
+        """The bytes of buffer view `index`."""
         view = self._root.entry("bufferViews", index)
         offset, length = view.integer("byteOffset", 0), view.integer("byteLength")
         buffer = self._buffer(view.integer("buffer"))
@@ -93,7 +102,10 @@ class Buffers:
         return memoryview(buffer)[offset : offset + length]
 
     def numbers(self, index: int, width: int) -> Float64Array:
-        """(n, width) float64 of an accessor; normalized integers become fractions."""
+        """Accessor `index` as finite numbers (n, width) float64.
+
+        Normalized integers become fractions (glTF 2.0, 3.6.2.2).
+        """
         accessor = self._root.entry("accessors", index)
         values = self._values(accessor, width)
         finite = np.isfinite(values).all(axis=1)
@@ -106,7 +118,7 @@ class Buffers:
         return numbers
 
     def indices(self, index: int) -> Int64Array:
-        """(n,) int64 of a scalar accessor of unsigned integers."""
+        """Accessor `index`, which holds unsigned integers, as (n,) int64."""
         accessor = self._root.entry("accessors", index)
         values = self._values(accessor, 1)
         if values.dtype.kind != "u":

@@ -12,7 +12,7 @@ from nispcodec.core.errors import MeshError
 
 
 def parse_json(data: bytes, name: str) -> Element:
-    """The root object of a JSON text; `name` is the file, for messages."""
+    """The root object of a JSON text. Raises MeshError, naming the file `name`, for other text."""
     try:
         value = json.loads(data)
     except (ValueError, RecursionError) as why:
@@ -25,7 +25,10 @@ def parse_json(data: bytes, name: str) -> Element:
 
 @dataclass(frozen=True)
 class Element:
-    """A JSON value, its file, and its path in there, such as "meshes[0].primitives[1]"."""
+    """A JSON value, its file, and its path in there, such as "meshes[0].primitives[1]".
+
+    Raises MeshError, naming file and path, in every method that finds something else than it says.
+    """
 
     value: object
     file: str
@@ -42,7 +45,7 @@ class Element:
         raise MeshError(f"{self.place}: expected {expected}, found {shown[:60]}")
 
     def get(self, key: str) -> Element | None:
-        """The member `key`, None when missing."""
+        """The member `key` of an object, None when missing."""
         if not isinstance(self.value, dict):
             self.fail("an object", self.value)
         if key not in self.value:
@@ -50,12 +53,12 @@ class Element:
         return Element(self.value[key], self.file, f"{self.path}.{key}" if self.path else key)
 
     def need(self, key: str) -> Element:
-        """The member `key`; MeshError when missing."""
+        """The member `key` of an object, which must be there."""
         member = self.get(key)
         return self.fail(f"a member {key!r}", "none") if member is None else member
 
     def entry(self, key: str, index: int) -> Element:
-        """Item `index` of the array `key`."""
+        """Item `index` of the array `key`, which must be there."""
         array = self.need(key)
         items = array._list()
         if not 0 <= index < len(items):
@@ -63,13 +66,13 @@ class Element:
         return Element(items[index], self.file, f"{array.path}[{index}]")
 
     def entries(self, key: str) -> list[Element]:
-        """All items of the array `key`, none when it is missing."""
+        """All items of the array `key`; an empty list when it is missing."""
         array = self.get(key)
         count = 0 if array is None else len(array._list())
         return [self.entry(key, index) for index in range(count)]
 
     def integer(self, key: str, default: int | None = None) -> int:
-        """A non-negative integer; required unless there is a default."""
+        """The non-negative integer `key`, below 2^53; required unless there is a default."""
         member = self.get(key)
         if member is None and default is not None:
             return default
@@ -82,16 +85,16 @@ class Element:
         return value
 
     def optional(self, key: str) -> int | None:
-        """A non-negative integer, or None when it is missing."""
+        """The non-negative integer `key`, None when missing."""
         return None if self.get(key) is None else self.integer(key)
 
     def number(self, key: str, default: float) -> float:
-        """A finite number."""
+        """The finite number `key`."""
         member = self.get(key)
         return default if member is None else member._number()
 
     def numbers(self, key: str, default: Sequence[float]) -> tuple[float, ...]:
-        """As many finite numbers as the default has."""
+        """The array `key` of as many finite numbers as the default has."""
         member = self.get(key)
         if member is None:
             return tuple(default)
@@ -101,7 +104,7 @@ class Element:
         return values
 
     def text(self, key: str, default: str) -> str:
-        """A string."""
+        """The string `key`."""
         member = self.get(key)
         if member is None:
             return default
@@ -110,7 +113,7 @@ class Element:
         )
 
     def flag(self, key: str) -> bool:
-        """A boolean, false when missing."""
+        """The boolean `key`, False when missing."""
         member = self.get(key)
         if member is None:
             return False
@@ -121,13 +124,13 @@ class Element:
         )
 
     def texts(self, key: str) -> list[str]:
-        """An array of strings, empty when missing."""
+        """The array of strings `key`, empty when missing."""
         member = self.get(key)
         items = [] if member is None else member._list()
         return [item if isinstance(item, str) else self.fail("strings", item) for item in items]
 
     def extension(self, name: str) -> Element | None:
-        """The object of one glTF extension."""
+        """The object of the glTF extension `name`, None when missing."""
         extensions = self.get("extensions")
         return None if extensions is None else extensions.get(name)
 

@@ -25,7 +25,10 @@ _GLOSSY = "KHR_materials_pbrSpecularGlossiness"
 
 @dataclass(frozen=True)
 class UvSource:
-    """A set of texture coordinates and the transform of KHR_texture_transform."""
+    """A set of texture coordinates and its transform as in KHR_texture_transform.
+
+    `rotation` is in radians; `texcoord` is the number of TEXCOORD_n.
+    """
 
     texcoord: int = 0
     offset: tuple[float, ...] = (0.0, 0.0)
@@ -33,7 +36,7 @@ class UvSource:
     scale: tuple[float, ...] = (1.0, 1.0)
 
     def apply(self, uvs: Float64Array) -> Float64Array:
-        """(n, 2) as in the file -> (n, 2) as looked up; both have their origin top-left."""
+        """UVs (n, 2) as in the file -> (n, 2) as looked up; both have their origin top-left."""
         if self.offset == (0.0, 0.0) and not self.rotation and self.scale == (1.0, 1.0):
             return uvs
         # The extension's text turns counter-clockwise as seen, with v pointing down. Its GLSL
@@ -45,7 +48,10 @@ class UvSource:
 
 
 class GltfMaterials:
-    """The materials that primitives use, numbered in the order of their first use."""
+    """The materials that primitives use, numbered in the order of their first use.
+
+    `shelf` gathers their textures. What cannot be kept of a material is said in `warnings`.
+    """
 
     def __init__(
         self, root: Element, buffers: Buffers, folder: Folder, warnings: list[str]
@@ -59,13 +65,17 @@ class GltfMaterials:
         self._made: dict[int | None, tuple[Material, UvSource]] = {}
 
     def use(self, index: int | None) -> tuple[int, UvSource]:
-        """The number of a document's material, None being the default, and its UVs."""
+        """The number of material `index` of the file, None being the default one, and its UVs.
+
+        Raises MeshError for a malformed material or an image that does not decode.
+        """
         if index not in self._made:
             self._made[index] = self._make(index)
         return list(self._made).index(index), self._made[index][1]
 
     @property
     def materials(self) -> tuple[Material, ...]:
+        """The materials used so far; at least one."""
         return tuple(material for material, _ in self._made.values()) or (Material(),)
 
     def _make(self, index: int | None) -> tuple[Material, UvSource]:

@@ -49,7 +49,10 @@ class MtlMaterial:
 
 
 def parse_mtl(data: bytes, name: str) -> dict[str, MtlMaterial]:
-    """The materials of an MTL file by name; MeshError names `name` and the line."""
+    """The materials of an MTL file by name.
+
+    Raises MeshError, naming the file `name` and the line, for a value that is no number.
+    """
     materials: dict[str, MtlMaterial] = {}
     current = MtlMaterial("")
     for number, line in wavefront.logical_lines(data):

@@ -23,9 +23,10 @@ _LARGEST_INDEX = 2**31 - 1
 
 
 def read_obj(data: bytes, name: str, folder: Folder) -> TexturedMesh:
-    """Parse an OBJ file, and the MTL files and images that it names.
+    """Parse an OBJ file, and the MTL files and images that it names in `folder`.
 
-    Errors name the file `name` and the line. Faces may come before the vertices they use.
+    Faces may come before the vertices they use. Raises MeshError, naming the file `name` and the
+    line, for coordinates and indices that make no sense and for images that do not decode.
     """
     statements = _Statements(name)
     statements.parse(data)

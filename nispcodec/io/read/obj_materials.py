@@ -19,7 +19,10 @@ _CHANGING = {"-boost", "-cc", "-imfchan", "-mm"}
 
 
 class MaterialReader:
-    """Turns material names into materials with the MTL files and images of one folder."""
+    """Turns material names into materials with the MTL files and images of one folder.
+
+    What cannot be kept of a material is said in `warnings`.
+    """
 
     def __init__(self, folder: Folder, warnings: list[str]) -> None:
         self._folder = folder
@@ -30,11 +33,14 @@ class MaterialReader:
 
     @property
     def textures(self) -> Sequence[Texture]:
-        """The images that the materials made so far use, without doubles."""
+        """The images that the materials made so far use, each once."""
         return self._shelf.textures
 
     def open_library(self, reference: str, place: str) -> None:
-        """Read the MTL file of an `mtllib` statement, which may name several."""
+        """Read the MTL file of an `mtllib` statement, which may name several.
+
+        `place` is that of the statement, for warnings. Raises MeshError for a malformed MTL file.
+        """
         whole = self._folder.find(reference)
         names = [reference] if whole else reference.split()
         for name in names:
@@ -46,7 +52,10 @@ class MaterialReader:
             self._known.update(parse_mtl(self._folder.read(path), path.name))
 
     def materials(self, names: Sequence[str]) -> tuple[Material, ...]:
-        """One material a name, in order; at least one."""
+        """One material for each name, in order; at least one.
+
+        Raises MeshError for an image that cannot be read and for a malformed option.
+        """
         return tuple(self._material(name) for name in names) or (Material(),)
 
     def _material(self, name: str) -> Material:

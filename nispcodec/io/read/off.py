@@ -19,7 +19,11 @@ _KEYWORD = re.compile(rb"(ST)?C?N?OFF")
 
 
 def read_off(data: bytes, name: str, folder: Folder) -> TexturedMesh:
-    """Parse a text OFF file; what follows x, y, z on a vertex line is left out."""
+    """Parse a text OFF file; what follows x, y, z on a vertex line is left out.
+
+    OFF names no other files: `folder` is not looked at. Raises MeshError, naming the file `name`
+    and the line, for a malformed file.
+    """
     lines = wavefront.logical_lines(data)
     vertices, faces = _counts(lines, name)
     rows = [

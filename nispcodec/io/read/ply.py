@@ -1,4 +1,4 @@
-"""PLY: polygons in text or binary, with UVs each vertex or each corner, and textures by name."""
+"""PLY: polygons in text or binary, with a UV for each vertex or corner, and textures by name."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ class Element:
 
 @dataclass
 class Header:
-    """What a PLY header says; `size` is its length in bytes."""
+    """A PLY header: format, elements, names of texture files; `size` is its length in bytes."""
 
     format: str
     elements: list[Element]
@@ -57,7 +57,10 @@ class Header:
 
 
 def read_ply(data: bytes, name: str, folder: Folder) -> TexturedMesh:
-    """Parse a PLY file and the images that its TextureFile comments name."""
+    """Parse a PLY file, and the images in `folder` that its TextureFile comments name.
+
+    Raises MeshError, naming the file `name` and the place in it, for a malformed file.
+    """
     header = parse_header(data, name)
     _read_elements(header, data, name)
     elements = {element.name: element for element in header.elements}
@@ -72,7 +75,10 @@ def read_ply(data: bytes, name: str, folder: Folder) -> TexturedMesh:
 
 
 def parse_header(data: bytes, name: str) -> Header:
-    """Parse up to and with `end_header`; MeshError names the file and the line."""
+    """Parse the file up to and including `end_header`.
+
+    Raises MeshError, naming the file `name` and the line, for a malformed header.
+    """
     end = data.find(b"end_header")
     newline = data.find(b"\n", end)
     if not data.startswith(b"ply") or end < 0 or newline < 0:

@@ -16,7 +16,11 @@ _HEADER, _FACET = 84, 50
 
 
 def read_stl(data: bytes, name: str, folder: Folder) -> TexturedMesh:
-    """Parse a binary or text STL file; every face has vertices of its own."""
+    """Parse a binary or text STL file; every face has vertices of its own.
+
+    STL names no other files: `folder` is not looked at. Raises MeshError, naming the file `name`
+    and the place in it, for a malformed file.
+    """
     if len(data) >= _HEADER:
         (count,) = struct.unpack_from("<I", data, _HEADER - 4)
         if len(data) == _HEADER + _FACET * count:

@@ -1,4 +1,4 @@
-"""What OBJ and MTL files share: lines, comments, names, numbers."""
+"""The grammar that OBJ and MTL files share: lines, comments, names, numbers."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ def logical_lines(data: bytes) -> Iterator[tuple[int, bytes]]:
 
 
 def text(raw: bytes) -> str:
-    """A name: UTF-8 where it is, else Latin-1, which reads anything."""
+    """The bytes of a name as text: UTF-8 if they are that, else Latin-1, which reads anything."""
     try:
         return raw.decode("utf-8")
     except UnicodeDecodeError:
@@ -41,7 +41,7 @@ def text(raw: bytes) -> str:
 
 
 def rest(line: bytes, skipped: int = 1) -> str:
-    """What follows the first `skipped` words of a line, with its spaces, without its quotes."""
+    """The text after the first `skipped` words of a line, with its spaces, without its quotes."""
     words = line.split(None, skipped)
     name = text(words[skipped]).strip() if len(words) > skipped else ""
     quoted = len(name) > 1 and name[0] == name[-1] and name[0] in "\"'"
@@ -49,7 +49,10 @@ def rest(line: bytes, skipped: int = 1) -> str:
 
 
 def numbers(words: Sequence[bytes], least: int, place: str) -> list[float]:
-    """The words as finite numbers, at least so many of them."""
+    """The words as finite numbers.
+
+    Raises MeshError, naming `place`, for other words and for fewer than `least`.
+    """
     try:
         values = [float(word) for word in words]
     except ValueError:

@@ -10,11 +10,13 @@ from nispcodec.core.arrays import Float32Array
 from nispcodec.core.asset import Material, TexturedMesh
 from nispcodec.core.errors import MeshError
 
-# (n, 4) float32 RGBA in [0, 1], one row a position of the mesh; RGB sRGB-encoded.
-
 
 def untextured(mesh: TexturedMesh, colors: Float32Array) -> TexturedMesh:
-    """The mesh with one plain material, ready to carry colors; MeshError if they do not fit."""
+    """The mesh without UVs and textures and with one plain material, ready to carry colors.
+
+    colors (n, 4): RGBA in [0, 1] of each position, RGB sRGB-encoded. Raises MeshError for another
+    shape.
+    """
     if colors.shape != (len(mesh.positions), 4):
         raise MeshError(f"colors: expected shape ({len(mesh.positions)}, 4), found {colors.shape}")
     blended = bool((colors[:, 3] < 1).any())

@@ -1,4 +1,4 @@
-"""GLB (glTF 2.0 binary): one primitive a material, the original image bytes embedded."""
+"""GLB (glTF 2.0 binary): one primitive for each material, the original image bytes embedded."""
 
 from __future__ import annotations
 
@@ -26,10 +26,11 @@ WEBP = "EXT_texture_webp"
 
 
 def glb_bytes(mesh: TexturedMesh, colors: Float32Array | None = None) -> bytes:
-    """The mesh as the bytes of a GLB file: V is flipped to glTF's top-left origin.
+    """The mesh as the bytes of a GLB file: v is flipped to glTF's top-left origin.
 
     A mesh far from the origin gets its place from its node, not from its float32 coordinates.
-    Colors (n, 4), sRGB-encoded, become COLOR_0 in linear light.
+    Colors (n, 4), sRGB-encoded RGBA of each position, become COLOR_0 in linear light. WebP images
+    are kept (EXT_texture_webp); AVIF ones become PNG, which glTF readers know.
     """
     return _Builder(colors).build(mesh)
 

@@ -17,9 +17,9 @@ def obj_files(
 ) -> dict[str, bytes]:
     """File name -> bytes of STEM.obj, STEM.mtl and one STEM_NAME for every texture in use.
 
-    Colors (n, 4) stand behind the positions, as many tools read them, without alpha; then there
-    is no MTL.
-    Occlusion and metallic-roughness maps are left out, and images used by nothing else with them.
+    Colors (n, 4), sRGB-encoded, stand behind the positions, as many tools read them, without
+    alpha; then there is no MTL. Occlusion and metallic-roughness maps are left out, and images that
+    nothing else uses with them.
     """
     if colors is not None:
         return {f"{stem}.obj": _colored_obj(mesh, colors).encode()}

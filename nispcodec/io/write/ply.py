@@ -12,8 +12,9 @@ from nispcodec.io.write.vertices import origin, split_vertices
 def ply_bytes(mesh: TexturedMesh, colors: Float32Array | None = None) -> bytes:
     """The mesh as the bytes of a binary little-endian PLY file.
 
-    A seam's vertices are doubled for their UVs s, t; colors (n, 4) become red, green, blue, alpha.
-    Coordinates take eight bytes when the mesh is far from the origin.
+    A seam's vertices are doubled for their UVs s, t; colors (n, 4), sRGB-encoded RGBA of each
+    position, become red, green, blue, alpha. Coordinates are float64 when the mesh is far from the
+    origin, else float32.
     """
     vertices = split_vertices(mesh, np.arange(len(mesh.faces)))
     kind = "<f8" if origin(mesh).any() else "<f4"

@@ -15,9 +15,12 @@ FAR = 100
 
 @dataclass(frozen=True)
 class Vertices:
-    """positions (n, 3) float64, uvs (n, 2) float32 with origin bottom-left, faces (m, 3) uint32.
+    """Vertices with one position and one UV each, and the faces between them.
 
-    sources (n,) int64 are the vertices' indices into the mesh's positions.
+    positions  (n, 3) float64, world frame
+    uvs        (n, 2) float32, origin bottom-left; (0, 0) on faces without UV
+    faces      (m, 3) uint32
+    sources    (n,) int64: the position of the mesh that each vertex comes from
     """
 
     positions: Float64Array
@@ -41,7 +44,7 @@ def split_vertices(mesh: TexturedMesh, faces: IndexArray) -> Vertices:
 
 
 def vertex_normals(mesh: TexturedMesh) -> Float32Array:
-    """Area-weighted unit normals of the mesh's positions (n, 3); up where they cancel out."""
+    """Area-weighted unit normals (n, 3) float32 of the mesh's positions; +z where they cancel."""
     a, b, c = mesh.corners.transpose(1, 0, 2)
     weighted = np.cross(b - a, c - a)
     normals = np.empty_like(mesh.positions)
@@ -56,7 +59,7 @@ def vertex_normals(mesh: TexturedMesh) -> Float32Array:
 
 
 def origin(mesh: TexturedMesh) -> Float64Array:
-    """Where the zero of float32 coordinates belongs: (3,), all 0 unless the mesh is far away."""
+    """The origin (3,) that float32 coordinates are relative to; all 0 unless the mesh is far."""
     low, high = mesh.positions.min(axis=0), mesh.positions.max(axis=0)
     far = np.abs(mesh.positions).max() > FAR * (high - low).max()
     return (low + high) / 2 if far else np.zeros(3)

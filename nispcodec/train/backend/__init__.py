@@ -1,1 +1,1 @@
-"""What computes a training step."""
+"""Backends: each computes training steps in its own way."""

@@ -47,13 +47,13 @@ class Module:
 
     @property
     def scales(self) -> dict[str, float]:
-        """What each tensor is a multiple of: w0 in sine layers."""
+        """The factor of each tensor, by name: w0 in sine layers, 1 elsewhere."""
         w0 = self.spec.w0 if self.spec.activation == "sine" else 1.0
         hidden = {f"{part}.{i}" for i in range(len(self.spec.hidden)) for part in _PARTS}
         return {name: w0 if name in hidden else 1.0 for name in self.spec.shapes}
 
     def matrices(self, last: float) -> tuple[Matrices, Matrices]:
-        """What an optimizer sees together, and its rate relative to the schedule's.
+        """Matrices that an optimizer sees as one, and their rates relative to the schedule's.
 
         For each layer [W | b], for the tables a row for each chart: where its numbers are in the
         vector. First those from one hidden layer to the next, then all others; `last` is the rate
