@@ -1,5 +1,7 @@
 # make demo: set up, encode a sample asset, decode it, show sizes and errors
 # make test: set up, then everything that CI runs; ends with the age of every result and the missed targets
+# make docs: the page of the public names, into build/api
+# make package: sdist and wheel into build/dist, tried in clean environments of every Python that is there
 # make fuzz: RUNS files of a coverage-guided fuzzer against the parser
 # make bench: every codec on the assets in ASSETS, into build/bench/report.html; one to three hours, goes on where it stopped
 
@@ -8,7 +10,7 @@ ASSETS ?= ../shared/assets
 RUNS ?= 2000000
 BIN := .venv/bin
 
-.PHONY: setup demo test lint fuzz bench
+.PHONY: setup demo test lint docs package fuzz bench
 
 setup: .venv/ready
 
@@ -17,7 +19,7 @@ setup: .venv/ready
 .venv/ready: pyproject.toml constraints.txt
 	$(PYTHON) -m venv .venv
 	$(BIN)/pip install --disable-pip-version-check -q -c constraints.txt torch==2.13.0
-	$(BIN)/pip install --disable-pip-version-check -q -c constraints.txt -e '.[dev,unwrap,bench]'
+	$(BIN)/pip install --disable-pip-version-check -q -c constraints.txt -e '.[all,dev,bench]'
 	-$(BIN)/pip install --disable-pip-version-check -q -c constraints.txt -e '.[simplify]'
 	touch $@
 
@@ -34,7 +36,13 @@ lint: setup
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
 
-test: lint
+docs: setup
+	$(BIN)/python docs/api.py
+
+package: setup
+	$(BIN)/python .ci/package.py
+
+test: lint docs package
 	$(BIN)/pytest -n 2
 	$(BIN)/python -m benchmarks.status
 
