@@ -8,17 +8,19 @@
 PYTHON ?= python3
 ASSETS ?= ../shared/assets
 RUNS ?= 2000000
+TORCH ?= torch==2.13.0
 BIN := .venv/bin
 
 .PHONY: setup demo test lint docs package fuzz bench
 
 setup: .venv/ready
 
-# torch first and exact: an open range can pull gigabytes of CUDA.
+# torch first and by itself, as on Linux what pip finds may bring gigabytes of CUDA: the build for
+# processors alone is on an index of PyTorch's own, TORCH='torch==2.13.0 --index-url ...'.
 # Simplification is for the benchmarks alone, and goes without where there is no C++ compiler.
 .venv/ready: pyproject.toml constraints.txt
 	$(PYTHON) -m venv .venv
-	$(BIN)/pip install --disable-pip-version-check -q -c constraints.txt torch==2.13.0
+	$(BIN)/pip install --disable-pip-version-check -q -c constraints.txt $(TORCH)
 	$(BIN)/pip install --disable-pip-version-check -q -c constraints.txt -e '.[all,dev,bench]'
 	-$(BIN)/pip install --disable-pip-version-check -q -c constraints.txt -e '.[simplify]'
 	touch $@
