@@ -1,4 +1,4 @@
-"""What only some uses need, and what to install for it.
+"""The packages that only some uses need, and the sentence that says what to install for them.
 
 `pip install nispcodec` decodes, queries, verifies and converts. Whatever else imports a package of
 an extra asks for it at its door with `require`, so that who lacks it reads one sentence.

@@ -13,7 +13,7 @@ from nispcodec.metrics.psnr import psnr
 def compare_pictures(original: Float32Array, decoded: Float32Array) -> dict[str, float]:
     """PSNR (dB, peak 1) and SSIM (Wang et al. 2004) of two (h, w, 3) pictures in [0, 1].
 
-    Raises QueryError when the shapes differ, NispError when the extra `render` is not installed.
+    Raises QueryError when the shapes differ, NispError without the extra `render`.
     """
     require("skimage", extra="render", what_for="comparing pictures")
     from skimage.metrics import structural_similarity
