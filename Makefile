@@ -1,23 +1,27 @@
 # make demo: set up, encode a sample asset, decode it, show sizes and errors
 # make test: set up, then everything that CI runs; ends with the age of every result and the missed targets
+# make docs: the page of the public names, into build/api
+# make package: sdist and wheel into build/dist, tried in clean environments of every Python that is there
 # make fuzz: RUNS files of a coverage-guided fuzzer against the parser
 # make bench: every codec on the assets in ASSETS, into build/bench/report.html; one to three hours, goes on where it stopped
 
 PYTHON ?= python3
 ASSETS ?= ../shared/assets
 RUNS ?= 2000000
+TORCH ?= torch==2.13.0
 BIN := .venv/bin
 
-.PHONY: setup demo test lint fuzz bench
+.PHONY: setup demo test lint docs package fuzz bench
 
 setup: .venv/ready
 
-# torch first and exact: an open range can pull gigabytes of CUDA.
+# torch first and by itself, as on Linux what pip finds may bring gigabytes of CUDA: the build for
+# processors alone is on an index of PyTorch's own, TORCH='torch==2.13.0 --index-url ...'.
 # Simplification is for the benchmarks alone, and goes without where there is no C++ compiler.
 .venv/ready: pyproject.toml constraints.txt
 	$(PYTHON) -m venv .venv
-	$(BIN)/pip install --disable-pip-version-check -q -c constraints.txt torch==2.13.0
-	$(BIN)/pip install --disable-pip-version-check -q -c constraints.txt -e '.[dev,unwrap,bench]'
+	$(BIN)/pip install --disable-pip-version-check -q -c constraints.txt $(TORCH)
+	$(BIN)/pip install --disable-pip-version-check -q -c constraints.txt -e '.[all,dev,bench]'
 	-$(BIN)/pip install --disable-pip-version-check -q -c constraints.txt -e '.[simplify]'
 	touch $@
 
@@ -34,7 +38,13 @@ lint: setup
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
 
-test: lint
+docs: setup
+	$(BIN)/python docs/api.py
+
+package: setup
+	$(BIN)/python .ci/package.py
+
+test: lint docs package
 	$(BIN)/pytest -n 2
 	$(BIN)/python -m benchmarks.status
 

@@ -21,6 +21,7 @@ from typing import TYPE_CHECKING
 import nispcodec.render  # noqa: F401
 from nispcodec.core.asset import Material, Texture, TexturedMesh, TextureMap
 from nispcodec.core.errors import FitError, FormatError, MeshError, NispError, QueryError
+from nispcodec.core.extras import require
 from nispcodec.core.progress import Listener, Progress, silent
 from nispcodec.encode.config import EncodeConfig
 
@@ -85,7 +86,7 @@ def encode(
     progress: Listener = silent,
     tuning: Tuning | None = None,
 ) -> NispModel:
-    """Fit networks to a mesh, or to the mesh in a file.
+    """Fit networks to a mesh, or to the mesh in a file. Needs `pip install 'nispcodec[encode]'`.
 
     `config` holds what a user chooses, by default `EncodeConfig()`. `progress` is called with each
     `Progress`. `tuning` holds numbers that are not meant to be chosen by users
@@ -95,8 +96,9 @@ def encode(
     script then wants `if __name__ == "__main__":` around its calls. Ctrl-C and errors leave nothing
     behind. Raises TypeError for what is neither mesh nor path, MeshError for a file that cannot be
     read and when nothing of the mesh can be held by a signed distance, FitError when a network does
-    not converge, NispError for a target that cannot be met.
+    not converge, NispError for a target that cannot be met and without the extra.
     """
+    require("torch", "scipy", "igl", extra="encode", what_for="encoding")
     from nispcodec.encode import recipe
 
     return recipe.encode(_mesh(mesh), config, progress, tuning)
@@ -124,9 +126,11 @@ def compare(
     """Distortion of a decode: distance, UV, color, charts, in the original's normalized frame.
 
     A model is decoded as `NispModel.to_mesh` does, and asked for its charts too; see
-    `nispcodec.metrics.compare`. Raises TypeError for what is neither mesh nor path, MeshError for a
-    file that cannot be read and for a mesh without a surface.
+    `nispcodec.metrics.compare`. Needs `pip install 'nispcodec[render]'`. Raises TypeError for what
+    is neither mesh nor path, MeshError for a file that cannot be read and for a mesh without a
+    surface, NispError without the extra.
     """
+    require("igl", extra="render", what_for="comparing")
     from nispcodec.metrics.compare import compare as compared
     from nispcodec.model import NispModel
 
@@ -140,8 +144,9 @@ def render(asset: NispModel | TexturedMesh, view: str = "30,20", size: int = 512
 
     A model is sphere-traced, a mesh is hit by rays; it is transparent where nothing is hit. `view`
     is "front", "back", "left", "right", "top", "bottom" or "azimuth,elevation" in degrees; `size`
-    is in pixels. Raises QueryError for another view, MeshError for a mesh without a surface and for
-    a texture that does not decode.
+    is in pixels. Needs `pip install 'nispcodec[render]'`. Raises QueryError for another view,
+    MeshError for a mesh without a surface and for a texture that does not decode, NispError without
+    the extra.
     """
     from nispcodec.render.camera import view as camera
     from nispcodec.render.views import render_views

@@ -22,9 +22,9 @@ RULES: dict[str, tuple[set[str], set[str]]] = {
     "train": ({"numpy", "torch"}, {"core", "dataset"}),
     "format": ({"numpy", "msgpack", "zstandard"}, {"core"}),
     "infer": ({"numpy", "threadpoolctl"}, {"core"}),
-    "extract": ({"numpy", "scipy", "fast_simplification"}, {"core", "infer"}),
+    "extract": ({"numpy", "fast_simplification"}, {"core", "infer"}),
     "model": ({"numpy"}, {"core", "infer", "extract"}),
-    "metrics": ({"numpy", "scipy", "skimage", "igl"}, {"core"}),
+    "metrics": ({"numpy", "skimage", "igl"}, {"core"}),
     "render": (
         {"numpy", "scipy", "embreex", "PIL"},
         {"core", "infer", "extract", "model", "metrics"},
@@ -106,6 +106,7 @@ STRUCTURAL = {
     "nispcodec/extract/grid.py CHUNK",
     "nispcodec/extract/grid.py CUBE",
     "nispcodec/extract/isosurface.py BALL",
+    "nispcodec/extract/neighbors.py PAIRS",
     "nispcodec/geometry/z_order.py BITS",
 }
 

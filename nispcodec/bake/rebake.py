@@ -12,6 +12,7 @@ from nispcodec.bake.tangents import frames_at
 from nispcodec.core.arrays import Float32Array
 from nispcodec.core.asset import Material, Texture, TexturedMesh, TextureMap
 from nispcodec.core.errors import MeshError
+from nispcodec.core.extras import require
 from nispcodec.core.raster import Texels, padded, texels
 from nispcodec.model import NispModel
 
@@ -24,8 +25,9 @@ def rebaked(model: NispModel, mesh: TexturedMesh, size: int = 1024) -> TexturedM
     `mesh`, in the world frame, has an atlas of its own: every face with UVs in [0, 1], none over
     another. Texels outside the atlas take the color of the nearest texel inside, so that no
     filter and no mip level bleeds. Raises MeshError when faces have no UVs, the size is not 16 to
-    8192, or a texture does not decode.
+    8192, or a texture does not decode, NispError without the extra `unwrap`.
     """
+    require("scipy", extra="unwrap", what_for="rebaking")
     if not SIZES[0] <= size <= SIZES[1]:
         raise MeshError(f"size: expected {SIZES[0]} to {SIZES[1]} texels, found {size}")
     if not mesh.has_uv.all():

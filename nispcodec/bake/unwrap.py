@@ -7,21 +7,18 @@ from dataclasses import replace
 import numpy as np
 
 from nispcodec.core.asset import TexturedMesh
-from nispcodec.core.errors import MeshError
+from nispcodec.core.extras import require
 
 
 def unwrap(mesh: TexturedMesh) -> TexturedMesh:
     """New UVs in [0, 1] without overlaps, by xatlas; faces, positions and materials stay.
 
     UVs that the mesh has are replaced: its maps no longer fit and are dropped with a warning.
-    Raises MeshError when the extra `unwrap` is not installed.
+    Raises NispError without the extra `unwrap`.
     """
-    try:
-        import xatlas
-    except ImportError as why:
-        raise MeshError(
-            "unwrapping needs xatlas, found none: pip install 'nispcodec[unwrap]'"
-        ) from why
+    require("xatlas", extra="unwrap", what_for="unwrapping")
+    import xatlas
+
     # Large or far-away coordinates would not survive float32.
     center, radius = mesh.positions.mean(axis=0), np.ptp(mesh.positions, axis=0).max() or 1.0
     moved = ((mesh.positions - center) / radius).astype(np.float32)

@@ -1,10 +1,8 @@
-"""Equal rows of tables, and what of a mesh hangs together through them."""
+"""Equal rows of tables, and what of a graph or a mesh hangs together."""
 
 from __future__ import annotations
 
 import numpy as np
-from scipy.sparse import coo_matrix
-from scipy.sparse.csgraph import connected_components
 
 from nispcodec.core.arrays import AnyArray, Int32Array, Int64Array, IntArray
 
@@ -26,13 +24,40 @@ def connected_faces(corners: Int64Array) -> Int32Array:
 
     Numbers rise with the first face that has each.
     """
-    faces = len(corners)
-    rows = np.repeat(np.arange(faces), 3)
-    columns = faces + corners.reshape(-1)
-    size = faces + int(corners.max()) + 1
-    graph = coo_matrix((np.ones(3 * faces, dtype=bool), (rows, columns)), shape=(size, size))
-    labels = connected_components(graph, directed=False)[1][:faces]
-    return _numbered_by_first(labels)
+    labels = connected_components(corners[:, :2], corners[:, 1:], int(corners.max()) + 1)[1]
+    return _numbered_by_first(labels[corners[:, 0]])
+
+
+def connected_components(starts: IntArray, ends: IntArray, size: int) -> tuple[int, Int32Array]:
+    """How many components the graph of nodes 0 to size - 1 has, and the component of each node.
+
+    starts, ends: the nodes at either end of each edge, two arrays of one shape, in any order
+    -> count, labels (size,) int32. Components are numbered by their lowest nodes, as scipy does.
+    """
+    # Every node points at a lower one of its component, or at itself (Liu and Tarjan, "Simple
+    # Concurrent Labeling Algorithms for Connected Components", 2019). A round follows all pointers
+    # to their roots, and points each root at the lowest of those that an edge leads to.
+    parents = np.arange(size, dtype=np.int32)
+    starts, ends = starts.astype(np.int32).ravel(), ends.astype(np.int32).ravel()
+    while len(starts):
+        low, high = np.minimum(starts, ends), np.maximum(starts, ends)
+        np.minimum.at(parents, high, low)
+        parents = _roots(parents)
+        starts, ends = parents[low], parents[high]
+        apart = starts != ends
+        starts, ends = starts[apart], ends[apart]
+    is_root = parents == np.arange(size, dtype=np.int32)
+    numbers = np.cumsum(is_root, dtype=np.int32) - np.int32(1)
+    return int(is_root.sum()), numbers[parents]
+
+
+def _roots(parents: Int32Array) -> Int32Array:
+    """Where each node comes to (n,) that follows parents up to the end."""
+    while True:
+        further = parents[parents]
+        if np.array_equal(further, parents):
+            return parents
+        parents = further
 
 
 def _numbered_by_first(labels: IntArray) -> Int32Array:

@@ -12,6 +12,7 @@ import numpy as np
 
 from nispcodec.core.arrays import Float64Array
 from nispcodec.core.asset import Texture, TexturedMesh
+from nispcodec.core.extras import require
 from nispcodec.core.raster import coverage, padded
 from nispcodec.core.texture import encode_image, image_bytes
 
@@ -24,8 +25,9 @@ def with_padded_textures(mesh: TexturedMesh, quality: int) -> tuple[Texture, ...
 
     Formats and names stay; `quality`, 1 to 100, is for lossy formats. An image that no face uses,
     or that some face uses across its border, stays as it is. Raises MeshError for a texture that
-    does not decode.
+    does not decode, NispError without the extra `encode`.
     """
+    require("scipy", extra="encode", what_for="padding textures")
     return tuple(_padded(mesh, number, quality) for number in range(len(mesh.textures)))
 
 

@@ -12,15 +12,14 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
-from scipy.spatial import KDTree
 
 from nispcodec.core.arrays import BoolArray, Float32Array, Float64Array, Int32Array, Int64Array
+from nispcodec.core.connectivity import connected_components
 from nispcodec.core.network import Network
 from nispcodec.extract.config import ComponentConfig
 from nispcodec.extract.grid import CUBE
 from nispcodec.extract.isosurface import BALL, Surface
+from nispcodec.extract.neighbors import GroupedPoints, groups_with_neighbors
 from nispcodec.infer.evaluate import gradient
 
 
@@ -64,12 +63,7 @@ def without_noise(
 
 def components(surface: Surface) -> tuple[int, Int32Array]:
     """How many connected components, and the component of each vertex (n,)."""
-    a, b = surface.faces[:, :2].T, surface.faces[:, 1:].T
-    rows, columns = np.concatenate([a[0], a[1]]), np.concatenate([b[0], b[1]])
-    size = len(surface.positions)
-    graph = coo_array((np.ones(len(rows), np.bool_), (rows, columns)), shape=(size, size))
-    count, labels = connected_components(graph, directed=False)
-    return count, labels.astype(np.int32)
+    return connected_components(surface.faces[:, :2], surface.faces[:, 1:], len(surface.positions))
 
 
 def spurious(
@@ -109,21 +103,19 @@ def _isolated(
     surface: Surface, labels: Int32Array, small: BoolArray, config: ComponentConfig
 ) -> BoolArray:
     """Of some components (c,) bool those with no other component near."""
-    apart = small[labels]
+    if not small.any():
+        return small
+    apart, count = small[labels], len(small)
     members, points = labels[apart], surface.positions[apart]
     others = surface.positions[~apart]
     others = others[:: 1 + len(others) // config.neighbor_vertices]
-    tree = KDTree(others)
-    near = np.isfinite(tree.query(points, distance_upper_bound=config.isolated)[0])
-    counts = np.maximum(np.bincount(members, minlength=len(small)), 1)
-    sums = [np.bincount(members, axis, len(small)) for axis in points.T]
-    centers = np.stack(sums, axis=1)[small] / counts[small, None]
-    # The nearest center is a component's own.
-    gaps = KDTree(centers).query(centers, k=2)[0][:, 1]
-    isolated = small.copy()
-    isolated[members[near]] = False
-    isolated[np.flatnonzero(small)[gaps <= config.isolated]] = False
-    return isolated
+    rest = GroupedPoints(others, np.full(len(others), count))
+    beside = groups_with_neighbors(GroupedPoints(points, members), rest, config.isolated, count)
+    sizes = np.maximum(np.bincount(members, minlength=count), 1)
+    sums = np.stack([np.bincount(members, axis, count) for axis in points.T], axis=1)
+    numbers = np.flatnonzero(small)
+    centers = GroupedPoints(sums[numbers] / sizes[numbers, None], numbers)
+    return small & ~beside & ~groups_with_neighbors(centers, centers, config.isolated, count)
 
 
 def _volumes(surface: Surface, labels: Int32Array, small: BoolArray) -> Float64Array:

@@ -7,10 +7,9 @@ Such an edge becomes two, each with the two faces that bound the same solid part
 from __future__ import annotations
 
 import numpy as np
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 
 from nispcodec.core.arrays import BoolArray, Float64Array, Int32Array, Int64Array
+from nispcodec.core.connectivity import connected_components
 from nispcodec.extract.config import SimplifyConfig
 from nispcodec.extract.isosurface import Surface
 
@@ -48,10 +47,8 @@ def _sheets(twins: Twins) -> Int32Array:
     count = 2 * len(one)
     # Half-edge h starts at corner h and ends at the face's following corner.
     after = np.arange(count).reshape(-1, 3)[:, [1, 2, 0]].ravel()
-    rows, columns = np.concatenate([one, after[one]]), np.concatenate([after[other], other])
-    graph = coo_array((np.ones(len(rows), np.bool_), (rows, columns)), shape=(count, count))
-    sheets: Int32Array = connected_components(graph, directed=False)[1]
-    return sheets
+    starts, ends = np.concatenate([one, after[one]]), np.concatenate([after[other], other])
+    return connected_components(starts, ends, count)[1]
 
 
 def _doubled(faces: Int32Array, twins: Twins) -> Int64Array:

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import numpy as np
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 
 from nispcodec.core.arrays import Int32Array, Int64Array
+from nispcodec.core.connectivity import connected_components
 from nispcodec.core.network import Network
 from nispcodec.extract.config import SeamConfig
 from nispcodec.extract.isosurface import Surface
@@ -37,9 +36,7 @@ def _without_small(charts: Int32Array, edges: Int64Array, least: int) -> Int32Ar
     """Patches of one chart with fewer than `least` vertices take the chart of most neighbors."""
     a, b = edges.T
     same = charts[a] == charts[b]
-    size = len(charts)
-    graph = coo_array((same[same], (a[same], b[same])), shape=(size, size))
-    count, patches = connected_components(graph, directed=False)
+    count, patches = connected_components(a[same], b[same], len(charts))
     small = (np.bincount(patches, minlength=count) < least)[patches]
     borders = np.concatenate([edges[~same], edges[~same][:, ::-1]])
     borders = borders[small[borders[:, 0]] & ~small[borders[:, 1]]]

@@ -9,6 +9,7 @@ import numpy as np
 from nispcodec.core.arrays import Float64Array
 from nispcodec.core.asset import TexturedMesh
 from nispcodec.core.document import Frame
+from nispcodec.core.extras import require
 from nispcodec.metrics.charts import Chooser, chart_accuracy
 from nispcodec.metrics.color import color_psnr
 from nispcodec.metrics.geometry import (
@@ -52,8 +53,9 @@ class Reference:
     def of(cls, original: TexturedMesh, *, samples: int = 100_000, seed: int = 0) -> Reference:
         """Draw the points of an original in the world frame.
 
-        Raises MeshError when it has no surface.
+        Raises MeshError when it has no surface, NispError without the extra `render`.
         """
+        require("igl", extra="render", what_for="comparing")
         frame = frame_of(original)
         surface = Surface.of(original, frame)
         points = surface.sample(samples, np.random.default_rng([seed, 0]))

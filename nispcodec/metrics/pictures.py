@@ -6,14 +6,16 @@ import numpy as np
 
 from nispcodec.core.arrays import Float32Array
 from nispcodec.core.errors import QueryError
+from nispcodec.core.extras import require
 from nispcodec.metrics.psnr import psnr
 
 
 def compare_pictures(original: Float32Array, decoded: Float32Array) -> dict[str, float]:
     """PSNR (dB, peak 1) and SSIM (Wang et al. 2004) of two (h, w, 3) pictures in [0, 1].
 
-    Raises QueryError when the shapes differ.
+    Raises QueryError when the shapes differ, NispError without the extra `render`.
     """
+    require("skimage", extra="render", what_for="comparing pictures")
     from skimage.metrics import structural_similarity
 
     if original.shape != decoded.shape:

@@ -6,6 +6,7 @@ import numpy as np
 
 from nispcodec.core.arrays import Float64Array, Int64Array, IntArray
 from nispcodec.core.asset import TexturedMesh
+from nispcodec.core.connectivity import connected_components
 from nispcodec.metrics.surface import Surface, frame_of
 
 FAR = 0.02
@@ -41,14 +42,8 @@ def _distances(known: Surface, surface: Surface, vertices: IntArray) -> Float64A
 
 def components(mesh: TexturedMesh) -> Int64Array:
     """(m,): the component of each face; vertices at equal positions count as one."""
-    from scipy.sparse import coo_array
-    from scipy.sparse.csgraph import connected_components
-
     _, welded = np.unique(mesh.positions, axis=0, return_inverse=True)
     faces = welded.reshape(-1)[mesh.faces]
-    rows, columns = faces[:, [0, 1]].ravel(), faces[:, [1, 2]].ravel()
-    size = len(mesh.positions)
-    links = coo_array((np.ones(len(rows), dtype=np.int8), (rows, columns)), shape=(size, size))
-    _, labels = connected_components(links, directed=False)
+    _, labels = connected_components(faces[:, :2], faces[:, 1:], len(mesh.positions))
     _, compact = np.unique(labels[faces[:, 0]], return_inverse=True)
     return np.asarray(compact, dtype=np.int64)

@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
-from scipy.ndimage import uniform_filter
 
 from nispcodec.core.arrays import Float32Array
 from nispcodec.render.camera import Camera
@@ -39,6 +38,8 @@ def close_ups(
     `differences` are those (size, size) of the pictures from each of the `views`. The scene tells
     how far away the surface is.
     """
+    from scipy.ndimage import uniform_filter
+
     smooth = [uniform_filter(each, max(3, round(WINDOW * len(each)))) for each in differences]
     cameras: list[Camera] = []
     for _ in range(count):

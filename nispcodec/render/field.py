@@ -7,6 +7,7 @@ import numpy as np
 from nispcodec.core.arrays import Float32Array, Int32Array, Int64Array
 from nispcodec.core.asset import Material, Texture
 from nispcodec.core.document import Frame
+from nispcodec.core.extras import require
 from nispcodec.infer.evaluate import gradient
 from nispcodec.model import NispModel
 from nispcodec.render.fragments import Cast, Fragments
@@ -23,9 +24,13 @@ OPENING = Material("opening", base_color=(0.0, 0.0, 0.0, 0.0), alpha_mode="mask"
 
 
 class FieldScene:
-    """The networks of a model as a scene; making one evaluates the field on a grid."""
+    """The networks of a model as a scene; making one evaluates the field on a grid.
+
+    Raises NispError without the extra `render`.
+    """
 
     def __init__(self, model: NispModel) -> None:
+        require("scipy", extra="render", what_for="rendering")
         self.model = model
         self.space = bounding_space(model.document.sdf, model.document.half_thickness)
         self._chart_materials = self._materials_of_charts()

@@ -7,6 +7,7 @@ import numpy as np
 from nispcodec.core.arrays import Float32Array, Float64Array, Int64Array
 from nispcodec.core.asset import Material, Texture, TexturedMesh
 from nispcodec.core.document import Frame
+from nispcodec.core.extras import require
 from nispcodec.metrics.surface import Surface, SurfacePoints, frame_of
 from nispcodec.metrics.uv import uv_at
 from nispcodec.render.fragments import Cast, Fragments
@@ -17,10 +18,11 @@ class MeshScene:
     """A mesh in the world frame as a scene, placed by `frame`.
 
     That is the mesh's own by default, or the original's when it is compared with one. Raises
-    MeshError for a mesh without a surface.
+    MeshError for a mesh without a surface, NispError without the extra `render`.
     """
 
     def __init__(self, mesh: TexturedMesh, frame: Frame | None = None) -> None:
+        require("embreex", "igl", extra="render", what_for="rendering a mesh")
         from embreex.mesh_construction import TriangleMesh
         from embreex.rtcore_scene import EmbreeScene
 

@@ -8,6 +8,7 @@ import numpy as np
 
 from nispcodec.core.arrays import Float32Array
 from nispcodec.core.asset import TexturedMesh
+from nispcodec.core.extras import require
 from nispcodec.core.progress import Listener, Progress, silent
 from nispcodec.metrics.compare import Report, compare
 from nispcodec.metrics.pictures import compare_pictures
@@ -46,8 +47,9 @@ def sheet(
     is sphere-traced, a mesh is hit by rays. To their right are the UV layouts. On top stand the
     title and the numbers: PSNR and SSIM of the VIEWS; distance, UV and color of the decoded mesh
     as in `nispcodec.metrics.compare`. Raises MeshError for a mesh without a surface and for a
-    texture that does not decode.
+    texture that does not decode, NispError without the extra `render`.
     """
+    require("scipy", "igl", "embreex", "skimage", extra="render", what_for="a sheet")
     frame = frame_of(original)
     scenes = scene_of(original, frame), scene_of(decoded, frame)
     _tell(progress, 0)

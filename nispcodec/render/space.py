@@ -11,7 +11,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.ndimage import distance_transform_edt, label, map_coordinates
 
 from nispcodec.core.arrays import BoolArray, Float32Array, Int64Array
 from nispcodec.core.network import Network
@@ -64,6 +63,8 @@ class Space:
 
 
 def _between(grid: Float32Array, place: Float32Array) -> Float32Array:
+    from scipy.ndimage import map_coordinates
+
     values: Float32Array = map_coordinates(grid, place, output=np.float32, order=1, mode="nearest")
     return values
 
@@ -110,6 +111,8 @@ def _from_known(known: BoolArray, values: Float32Array) -> tuple[Float32Array, F
 
     There is no surface in between, so that both are on the same side of it.
     """
+    from scipy.ndimage import distance_transform_edt
+
     nearest = distance_transform_edt(~known, return_distances=False, return_indices=True)
     away = np.zeros(known.shape, np.float32)
     for there, here in zip(nearest, np.ogrid[tuple(map(slice, known.shape))], strict=True):
@@ -144,6 +147,8 @@ def _is_surface(
     network: Network, half_thickness: float, cells: Int64Array, count: int
 ) -> BoolArray:
     """Which cells are inside the unit ball and hold no surface that is recognized as noise."""
+    from scipy.ndimage import label
+
     centers = _centers(cells, count)
     reach = 2 * CUBE / count
     inside: BoolArray = np.linalg.norm(centers, axis=1) < BALL + reach

@@ -8,7 +8,7 @@ import pytest
 
 from nispcodec.bake.unwrap import unwrap
 from nispcodec.core.asset import TexturedMesh
-from nispcodec.core.errors import MeshError
+from nispcodec.core.errors import NispError
 from nispcodec.geometry.charts import split_charts
 from tests.io.files import image, load_obj
 
@@ -49,5 +49,5 @@ def test_without_xatlas_the_error_says_what_to_install(
     cube: TexturedMesh, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setitem(sys.modules, "xatlas", None)
-    with pytest.raises(MeshError, match=r"pip install 'nispcodec\[unwrap\]'"):
+    with pytest.raises(NispError, match=r"pip install 'nispcodec\[unwrap\]'"):
         unwrap(cube)
