@@ -1,5 +1,5 @@
 # make demo: set up, encode a sample asset, decode it, show sizes and errors
-# make test: set up, then everything that CI runs; ends with the age of every result and the missed targets
+# make test: set up, then everything that CI runs
 # make docs: the page of the public names, into build/api
 # make package: sdist and wheel into build/dist, tried in clean environments of every Python that is there
 # make fuzz: RUNS files of a coverage-guided fuzzer against the parser
@@ -45,8 +45,8 @@ package: setup
 	$(BIN)/python .ci/package.py
 
 test: lint docs package
-	$(BIN)/pytest -n 2
 	$(BIN)/python -m benchmarks.status
+	$(BIN)/pytest -n 2
 
 fuzz: setup
 	$(BIN)/pip install --disable-pip-version-check -q -c constraints.txt -e '.[fuzz]'
