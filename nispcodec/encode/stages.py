@@ -31,7 +31,7 @@ class StageSeconds:
     )
     after: float = 1.0
     paper: float = 1200.0
-    rounding: float = 0.9
+    rounding: float = 0.93
 
 
 def with_overall(listen: Listener, config: EncodeConfig, training: TrainConfig) -> Listener:
