@@ -6,7 +6,7 @@ from math import isnan
 from types import TracebackType
 from typing import TYPE_CHECKING
 
-from .lines import Whole, described, duration, facts, head, percent
+from .lines import Whole, duration, facts, head, noted, percent
 
 if TYPE_CHECKING:
     from rich.progress import TaskID
@@ -54,7 +54,7 @@ class Bars:
     def __call__(self, update: Progress) -> None:
         """Move the bars of the whole and of the update's network; a note stays above them."""
         if update.note:
-            self._rows.console.print(described(update), markup=False)
+            self._rows.console.print(noted(update), markup=False)
         if update.network:
             self._move(update)
         self._move_whole(update)

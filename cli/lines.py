@@ -71,7 +71,7 @@ class Lines:
         self._whole.hear(update)
         self._stages[update.network] = _state(update)
         if update.note:
-            click.echo(described(update), err=True)
+            click.echo(noted(update), err=True)
         tenths = int(TENTHS * self._whole.share + 1e-9)
         if self._tenths < tenths < TENTHS:
             self._tenths = tenths
@@ -84,10 +84,9 @@ class Lines:
         return f"{self._title} {self._tenths * 10:3d} %, about {left} left: {doing}"
 
 
-def described(update: Progress) -> str:
-    """One plain line: `uv fit: 100/2000, loss 1.0e-03, held-out 3.1e-04, 12 s left`."""
-    told = ", ".join([*facts(update), *([update.note] if update.note else [])])
-    return f"{head(update)}: {told}" if told else head(update)
+def noted(update: Progress) -> str:
+    """The note of an update, and whose it is: `uv fit: diverged at step 90`."""
+    return f"{head(update)}: {update.note}"
 
 
 def head(update: Progress) -> str:
