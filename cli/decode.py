@@ -11,6 +11,7 @@ import click
 
 from .choices import mesh_suffixes
 from .errors import warn
+from .extras import expect_installed
 from .lines import duration
 from .outputs import OutputFile, listed, output_option, refuse_overwriting
 from .progress import progress_options, shown
@@ -80,6 +81,8 @@ def command(
 
     if colors and rebake:
         raise click.UsageError("--colors and --rebake: expected one of them, found both")
+    if rebake:
+        expect_installed("xatlas", "scipy")
     started = time.monotonic()
     loaded = NispModel(parsed(model.read(), model))
     refuse_overwriting(_planned(loaded, output, colors, bool(rebake)), force)

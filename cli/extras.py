@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import re
-from importlib import metadata
+from importlib import import_module, metadata
 
-DISTRIBUTIONS = {"igl": "libigl", "skimage": "scikit-image", "PIL": "Pillow"}
+DISTRIBUTIONS = {"igl": "libigl", "skimage": "scikit-image"}
 """Where the name that is imported is not the one that is installed."""
 
 OPTIONAL = (
@@ -20,24 +20,35 @@ OPTIONAL = (
 )
 
 
+def expect_installed(*packages: str) -> None:
+    """Raises ImportError, before the work, when one of the packages is missing."""
+    for package in packages:
+        import_module(package)
+
+
 def needed_extra(error: ImportError, command: str) -> str | None:
-    """One sentence that says what to install; None where no optional package is missing."""
+    """One sentence that says what to install; None where no optional package is missing.
+
+    `command` is the subcommand that wants it.
+    """
     package = (error.name or "").partition(".")[0]
     if package not in OPTIONAL:
         return None
     distribution = DISTRIBUTIONS.get(package, package)
-    found = "none" if isinstance(error, ModuleNotFoundError) else f"one that fails: {error}"
-    return f"nisp {command} needs {distribution}, found {found}: {install_line(distribution)}"
+    missing = isinstance(error, ModuleNotFoundError)
+    state = "is not installed" if missing else f"fails to load ({error})"
+    wanted = _installed_by(distribution, command)
+    return f"nisp {command} needs {distribution}, which {state}: pip install {wanted}"
 
 
-def install_line(distribution: str) -> str:
-    """The `pip install` that brings a distribution: by the extra of ours that has it, if any.
+def _installed_by(distribution: str, command: str) -> str:
+    """What `pip install` wants for a distribution: an extra of ours that has it, if any.
 
-    `all` comes last, where a smaller one does.
+    Of several that of the command, and never more than is needed.
     """
-    extras = sorted(_extras(distribution), key="all".__eq__)
-    wanted = f"'nispcodec[{extras[0]}]'" if extras else distribution
-    return f"pip install {wanted}"
+    first = "encode" if command == "encode" else "render"
+    extras = sorted(_extras(distribution), key=lambda name: (name != first, name == "all"))
+    return f"'nispcodec[{extras[0]}]'" if extras else distribution
 
 
 def _extras(distribution: str) -> list[str]:

@@ -13,7 +13,6 @@ import click
 
 from .choices import Named
 from .errors import warn
-from .extras import install_line
 
 if TYPE_CHECKING:
     from nispcodec.core.progress import Listener
@@ -53,7 +52,7 @@ def _kind(progress: str) -> str:
         able = sys.stderr.isatty() and os.environ.get("TERM") != "dumb"
         return "bar" if able and _has_rich() else "plain"
     if progress == "bar" and not _has_rich():
-        warn([f"--progress bar needs rich, found none: {install_line('rich')}; plain lines now"])
+        warn(["--progress bar needs rich, which is not installed: pip install rich"])
         return "plain"
     return progress
 

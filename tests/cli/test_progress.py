@@ -127,7 +127,9 @@ def no_rich(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def test_without_rich_lines_take_the_place_of_bars(no_rich: None, encode: Any) -> None:
     said = encode("--progress", "bar").stderr
-    assert "nisp: warning: --progress bar needs rich, found none: pip install " in said
+    assert (
+        "nisp: warning: --progress bar needs rich, which is not installed: pip install rich" in said
+    )
     assert PERCENT.findall(said) == ["10", "50", "100"]
 
 
