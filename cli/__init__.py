@@ -5,11 +5,14 @@ Nothing here imports numpy at the top of a module, so that `nisp --help` answers
 
 from __future__ import annotations
 
-import errno
 import importlib
+import sys
+from difflib import get_close_matches
 from typing import Any
 
 import click
+
+from .errors import Refused, explained, usage
 
 COMMANDS = (
     "encode",
@@ -41,30 +44,50 @@ class LazyGroup(click.Group):
         command: click.Command = importlib.import_module(f".{cmd_name}", __package__).command
         return command
 
+    def resolve_command(
+        self, ctx: click.Context, args: list[str]
+    ) -> tuple[str | None, click.Command | None, list[str]]:
+        """The command that is named. Raises UsageError for another name."""
+        if args[0] not in COMMANDS and not args[0].startswith("-"):
+            near = get_close_matches(args[0], COMMANDS, 1)
+            meant = f"; did you mean {near[0]}?" if near else ""
+            known = ", ".join(COMMANDS)
+            said = f"command: expected one of {known}, found {args[0]!r}{meant}"
+            raise click.UsageError(said, ctx)
+        return super().resolve_command(ctx, args)
+
     def invoke(self, ctx: click.Context) -> Any:
-        """Run; errors that the user can mend exit with 2, Ctrl-C with 130."""
+        """Run; what the user can mend becomes `Refused`, Ctrl-C exits with 130."""
         try:
             return super().invoke(ctx)
         except KeyboardInterrupt:
-            click.echo("nisp: interrupted, nothing written", err=True)
+            click.echo("nisp: interrupted; files are written whole or not at all", err=True)
             ctx.exit(130)
         except Exception as error:
-            click.echo(f"nisp: error: {_explained(error)}", err=True)
-            ctx.exit(2)
+            said = explained(error, ctx.invoked_subcommand or "")
+            if said is None:
+                raise
+            raise Refused(said) from error
+
+    def main(self, *args: Any, **kwargs: Any) -> Any:
+        """Run and exit: 0, 130, what the command says, or 2 with one line on standard error."""
+        try:
+            code = super().main(*args, **{**kwargs, "standalone_mode": False})
+        except click.exceptions.NoArgsIsHelpError as error:
+            error.show()
+            sys.exit(error.exit_code)
+        except click.ClickException as error:
+            click.echo(f"nisp: error: {usage(error)}", err=True)
+            sys.exit(2)
+        sys.exit(code if isinstance(code, int) else 0)
 
 
-def _explained(error: Exception) -> str:
-    """The text for an error the user can mend; raises any other again."""
-    from nispcodec.core.errors import NispError
-
-    if isinstance(error, OSError) and error.errno != errno.EPIPE:
-        return f"{error.filename}: {error.strerror}" if error.filename else str(error)
-    if isinstance(error, NispError):
-        return str(error)
-    raise error
-
-
-@click.group(cls=LazyGroup, context_settings={"help_option_names": ["-h", "--help"]})
+@click.group(
+    "nisp",
+    cls=LazyGroup,
+    context_settings={"help_option_names": ["-h", "--help"]},
+    epilog="Exit codes: 0 done, 1 `verify` found a fault, 2 an error, 130 interrupted.",
+)
 @click.version_option(package_name="nispcodec", message="%(prog)s %(version)s")
 def main() -> None:
     """Textured 3D assets as a few kilobytes of network weights.

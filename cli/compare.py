@@ -7,60 +7,90 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from .progress import working
+from .columns import FRAME, explanations
+from .progress import progress_options, shown
+from .ranges import Whole
 from .report import print_group, print_json
+from .sources import is_nisp, parsed, read_file, read_mesh
+from .subcommand import json_option, subcommand
+from .verdict import bounds, verdict
 
 if TYPE_CHECKING:
     from nispcodec.core.asset import TexturedMesh
+    from nispcodec.core.progress import Listener
     from nispcodec.metrics.compare import Report
+    from nispcodec.model import NispModel
 
 
-@click.command("compare", short_help="Measure a decode against the original.")
+@subcommand("compare", "Measure a decode against the original.")
 @click.argument("original", type=click.Path(path_type=Path))
 @click.argument("decoded", type=click.Path(path_type=Path))
-@click.option("--resolution", type=click.IntRange(8, 2048), help="As for decode.")
-@click.option("--samples", type=click.IntRange(100), default=100_000, show_default=True)
-@click.option("--seed", type=click.IntRange(0), default=0, show_default=True)
-@click.option("--json", "as_json", is_flag=True, help="As JSON.")
+@click.option("--resolution", type=Whole(8, 2048), help="As for decode.")
+@click.option("--samples", type=Whole(100), default=100_000, show_default=True)
+@click.option("--seed", type=Whole(0), default=0, show_default=True, help="Of the samples.")
+@click.option("--explain", is_flag=True, help="Say what each number means.")
+@progress_options
+@json_option
 def command(
-    original: Path, decoded: Path, resolution: int | None, samples: int, seed: int, as_json: bool
+    original: Path,
+    decoded: Path,
+    resolution: int | None,
+    explain: bool,
+    progress: str,
+    quiet: bool,
+    as_json: bool,
+    **how: Any,
 ) -> None:
     """Measure DECODED (a .nisp or a mesh file) against the mesh file ORIGINAL.
 
-    Distances are in the normalized frame of the original. A .nisp is decoded as `nisp decode`
-    does, and asked for the charts too.
+    Distances are in the normalized frame of the original: shares of its radius. A .nisp is decoded
+    as `nisp decode` does, and asked for the charts too. The last line is a verdict in words.
 
     \b
-    Example: nisp compare model.obj model.nisp
+    Example: nisp compare model.obj model.nisp --explain
     """
-    from nispcodec.io.load import load_mesh
-
-    mesh = load_mesh(original)
-    with working(f"comparing {decoded.name} with {original.name}"):
-        how = {"samples": samples, "seed": seed}
-        if decoded.suffix.lower() == ".nisp":
-            report = _compare_model(mesh, decoded, resolution, how)
-        else:
-            report = _compare_mesh(mesh, decoded, how)
+    mesh, other = read_mesh(original), _read(decoded)
+    with shown("compare", progress, quiet) as listen:
+        report = _compared(mesh, other, resolution, listen, how)
     if as_json:
-        print_json(report)
+        told = {"explained": explanations(report)} if explain else {}
+        print_json({**report, "verdict": verdict(report), **told})
         return
     for title, values in report.items():
         print_group(title, values)
+    if explain:
+        _explain(report)
+    click.echo(verdict(report))
 
 
-def _compare_mesh(original: TexturedMesh, path: Path, how: dict[str, Any]) -> Report:
-    from nispcodec.io.load import load_mesh
-    from nispcodec.metrics.compare import compare
+def _read(path: Path) -> TexturedMesh | NispModel:
+    from nispcodec.model import NispModel
 
-    return compare(original, load_mesh(path), **how)
+    return NispModel(parsed(read_file(path), path)) if is_nisp(path) else read_mesh(path)
 
 
-def _compare_model(
-    original: TexturedMesh, path: Path, resolution: int | None, how: dict[str, Any]
+def _compared(
+    original: TexturedMesh,
+    decoded: TexturedMesh | NispModel,
+    resolution: int | None,
+    listen: Listener,
+    how: dict[str, Any],
 ) -> Report:
-    import nispcodec
+    from nispcodec.core.progress import Progress
     from nispcodec.metrics.compare import compare
+    from nispcodec.model import NispModel
 
-    model = nispcodec.load(path)
-    return compare(original, model.to_mesh(resolution), model=model, **how)
+    if not isinstance(decoded, NispModel):
+        listen(Progress(stage="distances, UVs, colors", overall=0.0))
+        return compare(original, decoded, **how)
+    listen(Progress(stage="surface", overall=0.0))
+    mesh = decoded.to_mesh(resolution)
+    listen(Progress(stage="distances, UVs, colors, charts", overall=0.4))
+    return compare(original, mesh, model=decoded, **how)
+
+
+def _explain(report: Report) -> None:
+    click.echo()
+    for title, lines in explanations(report).items():
+        print_group(title, lines)
+    click.echo(f"{FRAME}\n{bounds()}\n")

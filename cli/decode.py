@@ -2,83 +2,143 @@
 
 from __future__ import annotations
 
+import time
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
-from .files import output_option
-from .progress import working
+from .choices import mesh_suffixes
+from .errors import warn
+from .extras import expect_installed
+from .lines import duration
+from .outputs import OutputFile, listed, output_option, refuse_overwriting
+from .progress import progress_options, shown
+from .ranges import Real, Whole
+from .report import print_json, print_written
+from .sources import Source, model_argument, parsed
+from .subcommand import force_option, json_option, subcommand
 
 if TYPE_CHECKING:
     from nispcodec.core.asset import TexturedMesh
+    from nispcodec.core.progress import Listener
     from nispcodec.model import NispModel
 
-SUFFIXES = (".glb", ".obj", ".ply", ".stl")
 REBAKE_FACES = 20_000
 """Making an atlas takes minutes for the hundreds of thousands of triangles of a plain decode."""
+FEWER = "  fewer faces: --faces 20000, or --target-error 1e-3 (mean distance, in radii)"
 
 
-@click.command("decode", short_help="Write a .nisp file as a textured mesh.")
-@click.argument("model", type=click.Path(path_type=Path))
-@output_option(*SUFFIXES)
+@subcommand("decode", "Write a .nisp file as a textured mesh.")
+@model_argument
+@output_option(OutputFile(mesh_suffixes))
 @click.option(
     "--mesh", "kind", flag_value="mesh", default="mesh", help="A textured mesh (default)."
 )
-@click.option(
-    "--resolution", type=click.IntRange(8, 2048), help="Cells a side; 256 to 512 unless told."
-)
-@click.option("--faces", type=click.IntRange(4), help="Simplify to at most this many triangles.")
+@click.option("--resolution", type=Whole(8, 2048), help="Cells a side; 256 to 512 unless told.")
+@click.option("--faces", type=Whole(4), help="Simplify to at most this many triangles.")
 @click.option(
     "--target-error",
-    type=click.FloatRange(0, min_open=True),
+    "error",
+    type=Real(0, min_open=True),
+    metavar="ERROR",
     help="As few triangles as keep the mean distance to the field's surface below this, in radii.",
 )
 @click.option("--colors", is_flag=True, help="Vertex colors instead of textures.")
 @click.option(
     "--rebake",
-    type=click.IntRange(16, 8192),
+    type=Whole(16, 8192),
     is_flag=False,
     flag_value=1024,
     metavar="[SIZE]",
     help=f"One new atlas, textures 1024 texels wide; {REBAKE_FACES:,} faces unless told.",
 )
 @click.option("--keep-spurious", is_flag=True, help="Keep what is recognized as noise.")
+@force_option
+@progress_options
+@json_option
 def command(
-    model: Path,
+    model: Source,
     output: Path,
     kind: str,
-    resolution: int | None,
-    faces: int | None,
-    target_error: float | None,
     colors: bool,
     rebake: int | None,
-    keep_spurious: bool,
+    force: bool,
+    progress: str,
+    quiet: bool,
+    as_json: bool,
+    **how: Any,
 ) -> None:
-    """Write the surface of MODEL (.nisp) as a textured mesh, in the units of the original.
+    """Write the surface of MODEL (.nisp, or - for standard input) as a textured mesh.
 
-    An OBJ gets its MTL and images beside it.
+    It is in the units of the original. An OBJ gets its MTL and images beside it.
 
     \b
     Example: nisp decode model.nisp --mesh -o out.glb
     """
-    import nispcodec
-    from nispcodec.io.save import write_mesh
+    from nispcodec.model import NispModel
 
     if colors and rebake:
         raise click.UsageError("--colors and --rebake: expected one of them, found both")
-    if rebake and faces is None and target_error is None:
-        faces = REBAKE_FACES
-    loaded = nispcodec.load(model)
-    with working(f"decoding {model.name}"):
-        mesh = loaded.to_mesh(resolution, faces, target_error, keep_spurious)
-        if rebake:
-            mesh = baked(loaded, mesh, rebake)
-        written = write_mesh(mesh, output, loaded.color(mesh.positions) if colors else None)
-    for warning in mesh.warnings:
-        click.echo(f"nisp: warning: {warning}", err=True)
-    click.echo(f"{output}: {len(mesh.faces):,} faces, {len(written)} file(s)")
+    if rebake:
+        expect_installed("xatlas", "scipy")
+    started = time.monotonic()
+    loaded = NispModel(parsed(model.read(), model))
+    refuse_overwriting(_planned(loaded, output, colors, bool(rebake)), force)
+    with shown("decode", progress, quiet) as listen:
+        mesh, written = _written(loaded, output, colors, rebake, how, listen)
+    warn(mesh.warnings)
+    report = _report(mesh, output, written, time.monotonic() - started)
+    if as_json:
+        print_json(report)
+    else:
+        _print_report(report, written, simple=how["faces"] is None and how["error"] is None)
+
+
+def _planned(model: NispModel, output: Path, colors: bool, rebake: bool) -> list[Path]:
+    """Every file that will be written."""
+    from nispcodec.io.save import mesh_paths
+
+    document = model.document
+    materials, textures = document.materials, document.textures
+    if rebake:
+        materials, textures = _rebaked_appearance(model)
+    return mesh_paths(output, materials, textures, colors)
+
+
+def _rebaked_appearance(model: NispModel) -> tuple[tuple[Any, ...], tuple[Any, ...]]:
+    """A material and textures, still empty, named as rebaking names them."""
+    from nispcodec.bake.rebake import baked_names
+    from nispcodec.core.asset import Material, Texture, TextureMap
+
+    names = baked_names(model)
+    maps = {slot: TextureMap(number) for number, slot in enumerate(names)}
+    textures = tuple(Texture(name, b"", "image/png") for name in names.values())
+    return (Material(maps=maps),), textures
+
+
+def _written(
+    model: NispModel,
+    output: Path,
+    colors: bool,
+    rebake: int | None,
+    how: dict[str, Any],
+    listen: Listener,
+) -> tuple[TexturedMesh, list[Path]]:
+    """The mesh, and the files that it was written to."""
+    from nispcodec.core.progress import Progress
+    from nispcodec.io.save import write_mesh
+
+    listen(Progress(stage="surface", overall=0.0))
+    if rebake and how["faces"] is None and how["error"] is None:
+        how = {**how, "faces": REBAKE_FACES}
+    mesh = model.to_mesh(**how)
+    if rebake:
+        listen(Progress(stage="atlas", overall=0.5))
+        mesh = baked(model, mesh, rebake)
+    listen(Progress(stage="files", overall=0.9))
+    return mesh, write_mesh(mesh, output, model.color(mesh.positions) if colors else None)
 
 
 def baked(model: NispModel, mesh: TexturedMesh, size: int) -> TexturedMesh:
@@ -87,3 +147,25 @@ def baked(model: NispModel, mesh: TexturedMesh, size: int) -> TexturedMesh:
     from nispcodec.bake.unwrap import unwrap
 
     return replace(rebaked(model, unwrap(mesh), size), warnings=mesh.warnings)
+
+
+def _report(
+    mesh: TexturedMesh, output: Path, written: list[Path], seconds: float
+) -> dict[str, Any]:
+    return {
+        "file": str(output),
+        "faces": len(mesh.faces),
+        "vertices": len(mesh.positions),
+        "files": listed(written),
+        "warnings": list(mesh.warnings),
+        "seconds": round(seconds, 1),
+    }
+
+
+def _print_report(report: dict[str, Any], written: list[Path], simple: bool) -> None:
+    """`simple`: nothing was asked about the number of faces."""
+    took = duration(report["seconds"])
+    click.echo(f"{report['file']}: {report['faces']:,} faces in {took}")
+    print_written(written, "  ")
+    if simple:
+        click.echo(FEWER)

@@ -8,29 +8,32 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from .files import output_option
-from .progress import duration, encode_progress
+from .choices import LibraryChoice, presets, texture_formats
+from .errors import warn
+from .lines import duration
+from .outputs import OutputFile, nisp_suffix, output_option, refuse_overwriting_others
+from .progress import progress_options, shown
 from .pruning import pruning_options
+from .ranges import Real, Whole
 from .report import print_group, print_json, rate
 from .sizes import parsed_size
+from .sources import read_mesh
+from .subcommand import force_option, json_option, subcommand
 
 if TYPE_CHECKING:
     from nispcodec.core.asset import TexturedMesh
     from nispcodec.model import NispModel
 
-PRESETS = ("balanced", "paper", "fast", "best")
-IMAGE_FORMATS = ("webp", "avif", "jpeg")
 
-
-@click.command("encode", short_help="Fit networks to a mesh and write a .nisp file.")
+@subcommand("encode", "Fit networks to a mesh and write a .nisp file.")
 @click.argument("mesh", type=click.Path(path_type=Path))
-@output_option(".nisp")
+@output_option(OutputFile(nisp_suffix))
 @click.option(
     "--preset",
-    type=click.Choice(PRESETS),
+    type=LibraryChoice(presets),
     default="balanced",
     show_default=True,
-    help="20 to 50 s: fast, 1 to 2 min: balanced, 5 to 10 min: best, on two cores.",
+    help="How long to learn: fast, balanced or best; paper is the published method.",
 )
 @click.option(
     "--target-size",
@@ -40,37 +43,42 @@ IMAGE_FORMATS = ("webp", "avif", "jpeg")
 )
 @click.option(
     "--target-error",
-    type=float,
+    type=Real(0, min_open=True),
     metavar="ERROR",
     help="Mean distance to the surface, such as 5e-4 (of the asset's radius).",
 )
+@click.option("--seed", type=Whole(0), default=0, show_default=True, help="Of everything random.")
 @click.option(
-    "--seed", type=click.IntRange(0), default=0, show_default=True, help="Of everything random."
+    "--device", default="auto", show_default=True, help="auto, cpu, cuda or cuda:N.", metavar="NAME"
 )
-@click.option("--device", default="auto", show_default=True, help="auto, cpu, cuda.")
-@click.option("--threads", type=click.IntRange(0), default=0, help="0, the default: all cores.")
+@click.option("--threads", type=Whole(0), default=0, help="0, the default: all cores.")
 @click.option("--unwrap", is_flag=True, help="Make new UVs with xatlas (drops the textures).")
 @click.option(
     "--pad-textures",
     is_flag=True,
     help="Fill what no face uses with the colors beside it: no specks at seams.",
 )
-@click.option("--texture-format", type=click.Choice(IMAGE_FORMATS), help="Re-encode the images.")
-@click.option("--texture-quality", type=click.IntRange(1, 100), default=90, show_default=True)
+@click.option("--texture-format", type=LibraryChoice(texture_formats), help="Re-encode the images.")
+@click.option("--texture-quality", type=Whole(1, 100), default=90, show_default=True)
 @pruning_options
 @click.option("--no-textures", is_flag=True, help="Leave the images out.")
-@click.option("--quiet", is_flag=True, help="No progress.")
-@click.option("--json", "as_json", is_flag=True, help="The report as JSON.")
+@force_option
+@progress_options
+@json_option
 def command(
     mesh: Path,
     output: Path,
     unwrap: bool,
     no_textures: bool,
+    force: bool,
+    progress: str,
     quiet: bool,
     as_json: bool,
     **how: Any,
 ) -> None:
-    """Fit networks to MESH (.obj, .glb, .gltf, .ply, .stl, .off) and write them.
+    """Fit networks to MESH (.obj .gltf .glb .ply .stl .off) and write them.
+
+    An earlier output of the same name is replaced; any other file only with --force.
 
     \b
     Example: nisp encode model.obj -o model.nisp
@@ -80,24 +88,22 @@ def command(
     import nispcodec
 
     started = time.monotonic()
+    refuse_overwriting_others(output, force)
     config = nispcodec.EncodeConfig(textures=not no_textures, **how)
     asset = _loaded(mesh, unwrap)
-    for warning in asset.warnings:
-        click.echo(f"nisp: warning: {warning}", err=True)
-    with encode_progress(quiet) as show:
-        model = nispcodec.encode(asset, config, progress=show)
+    warn(asset.warnings)
+    with shown("encode", progress, quiet) as listen:
+        model = nispcodec.encode(asset, config, progress=listen)
     nispcodec.save(model, output)
     report = _report(model, asset, mesh, output, time.monotonic() - started)
     if as_json:
         print_json(report)
     else:
-        _print_report(output, report)
+        _print_report(report)
 
 
 def _loaded(path: Path, unwrap: bool) -> TexturedMesh:
-    from nispcodec.io.load import load_mesh
-
-    mesh = load_mesh(path)
+    mesh = read_mesh(path)
     if not unwrap:
         return mesh
     from nispcodec.bake.unwrap import unwrap as unwrapped
@@ -110,6 +116,7 @@ def _report(
 ) -> dict[str, Any]:
     beside = () if source.suffix.lower() == ".glb" else asset.textures
     return {
+        "file": str(output),
         "bytes": rate(output.read_bytes()),
         "input_bytes": {
             "mesh": source.stat().st_size,
@@ -121,9 +128,9 @@ def _report(
     }
 
 
-def _print_report(output: Path, report: dict[str, Any]) -> None:
+def _print_report(report: dict[str, Any]) -> None:
     parts, source = report["bytes"], report["input_bytes"]
-    click.echo(f"{output}: {parts['total']:,} bytes, from {sum(source.values()):,}")
+    click.echo(f"{report['file']}: {parts['total']:,} bytes, from {sum(source.values()):,}")
     print_group("bytes", parts, "  ")
     print_group("input_bytes", source, "  ")
     print_group("measured", report["measured"], "  ")

@@ -3,42 +3,45 @@
 from __future__ import annotations
 
 from itertools import compress
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 
-from .report import print_group, print_json, rate
+from .report import number, print_group, print_json, rate
+from .sources import Source, model_argument, parsed
+from .subcommand import json_option, subcommand
 
 if TYPE_CHECKING:
-    from nispcodec.core.asset import Material, Texture
+    from nispcodec.core.asset import Material, Texture, TextureMap
     from nispcodec.core.document import Document
     from nispcodec.core.network import Network
 
+Facts = dict[str, Any]
 
-@click.command("info", short_help="Show what a .nisp file holds.")
-@click.argument("model", type=click.Path(path_type=Path))
+
+@subcommand("info", "Show what a .nisp file holds.")
+@model_argument
 @click.option("--textures", "listed", is_flag=True, help="The textures and who uses them, only.")
-@click.option("--json", "as_json", is_flag=True, help="As JSON.")
-def command(model: Path, listed: bool, as_json: bool) -> None:
-    """Show MODEL's sections, bytes per part, networks, materials and textures.
+@json_option
+def command(model: Source, listed: bool, as_json: bool) -> None:
+    """Show what MODEL (.nisp, or - for standard input) holds.
+
+    Sections, bytes per part, networks, materials with their maps and factors, textures, and what
+    the encode says of itself.
 
     \b
     Example: nisp info model.nisp --json
     """
-    from nispcodec.format import read
-
-    document = read(model)
-    facts = (
-        {"textures": list_textures(document)} if listed else describe(document, model.read_bytes())
-    )
+    data = model.read()
+    document = parsed(data, model)
+    facts = {"textures": list_textures(document)} if listed else describe(document, data)
     if as_json:
         print_json(facts)
     else:
-        print_group(str(model), facts)
+        print_group(str(model), facts if listed else _for_people(facts))
 
 
-def describe(document: Document, data: bytes) -> dict[str, Any]:
+def describe(document: Document, data: bytes) -> Facts:
     """Everything about a file that can be said without evaluating its networks."""
     return {
         "bytes": rate(data),
@@ -50,42 +53,51 @@ def describe(document: Document, data: bytes) -> dict[str, Any]:
         "charts": len(document.charts),
         "half_thickness": document.half_thickness,
         "networks": {name: _network(each) for name, each in document.networks.items()},
-        "materials": [_material(each) for each in document.materials],
-        "textures": [
-            {"name": each.name, "mime": each.mime, "bytes": len(each.data)}
-            for each in document.textures
-        ],
+        "materials": [_material(each, document) for each in document.materials],
+        "textures": [_texture(each) for each in document.textures],
         "measured": dict(document.info),
     }
 
 
-def list_textures(document: Document) -> list[dict[str, Any]]:
+def list_textures(document: Document) -> list[Facts]:
     """Every texture: its size in bytes and pixels, and the materials' slots that show it."""
     return [
-        {
-            "name": texture.name,
-            "mime": texture.mime,
-            "bytes": len(texture.data),
-            "pixels": _pixels(texture),
-            "used_by": ", ".join(
-                f"{material.name}.{slot}"
-                for material in document.materials
-                for slot, used in material.maps.items()
-                if used.texture == index
-            ),
-        }
+        {**_texture(texture), "used_by": _users(document, index)}
         for index, texture in enumerate(document.textures)
     ]
 
 
-def _pixels(texture: Texture) -> str:
-    from nispcodec.core.texture import decode_image
+def _users(document: Document, texture: int) -> str:
+    return ", ".join(
+        f"{material.name}.{slot}"
+        for material in document.materials
+        for slot, used in material.maps.items()
+        if used.texture == texture
+    )
 
-    height, width = decode_image(texture).shape[:2]
+
+def _texture(texture: Texture) -> Facts:
+    return {
+        "name": texture.name,
+        "mime": texture.mime,
+        "bytes": len(texture.data),
+        "pixels": _pixels(texture),
+    }
+
+
+def _pixels(texture: Texture) -> str:
+    """`1024 x 512`; `nisp verify` says what is wrong with an image that has no size."""
+    from nispcodec.core.errors import MeshError
+    from nispcodec.core.texture import image_size
+
+    try:
+        width, height = image_size(texture)
+    except MeshError:
+        return "unreadable"
     return f"{width} x {height}"
 
 
-def _sections(data: bytes) -> list[dict[str, Any]]:
+def _sections(data: bytes) -> list[Facts]:
     from nispcodec.format import inspect
 
     return [
@@ -101,7 +113,7 @@ def _sections(data: bytes) -> list[dict[str, Any]]:
     ]
 
 
-def _network(network: Network) -> dict[str, Any]:
+def _network(network: Network) -> Facts:
     spec = network.spec
     layers = (spec.inputs, *spec.hidden, spec.outputs)
     facts = {
@@ -120,10 +132,49 @@ def _network(network: Network) -> dict[str, Any]:
     return facts
 
 
-def _material(material: Material) -> dict[str, Any]:
+def _material(material: Material, document: Document) -> Facts:
+    """The factors, which are linear, and the maps by slot."""
+    cutoff = {"alpha_cutoff": material.alpha_cutoff} if material.alpha_mode == "mask" else {}
     return {
         "name": material.name,
         "base_color": list(material.base_color),
+        "metallic": material.metallic,
+        "roughness": material.roughness,
+        "emissive": list(material.emissive),
         "alpha_mode": material.alpha_mode,
-        "maps": {slot: used.texture for slot, used in material.maps.items()},
+        **cutoff,
+        "double_sided": material.double_sided,
+        "maps": {slot: _map(used, document) for slot, used in material.maps.items()},
     }
+
+
+def _map(used: TextureMap, document: Document) -> Facts:
+    texture = _texture(document.textures[used.texture])
+    return {
+        "texture": used.texture,
+        "image": texture.pop("name"),
+        **texture,
+        "wrap": list(used.wrap),
+        "filter": used.filter,
+        "strength": used.strength,
+    }
+
+
+def _for_people(facts: Facts) -> Facts:
+    """The same with a line for each map and each texture, and what made the file apart."""
+    measured = dict(facts["measured"])
+    made = {name: measured.pop(name) for name in ("preset", "seed") if name in measured}
+    materials = [_material_for_people(each) for each in facts["materials"]]
+    textures = {each["name"]: _image(each) for each in facts["textures"]}
+    told = {"encoded with": made or "not told", "measured": measured or "not told"}
+    rest = {name: value for name, value in facts.items() if name != "measured"}
+    return {**rest, "materials": materials, "textures": textures or "none", **told}
+
+
+def _material_for_people(material: Facts) -> Facts:
+    maps = {slot: f"{used['image']}, {_image(used)}" for slot, used in material["maps"].items()}
+    return {**material, "maps": maps or "none"}
+
+
+def _image(facts: Facts) -> str:
+    return f"{facts['pixels']} pixels, {facts['mime']}, {number(facts['bytes'])} bytes"

@@ -2,128 +2,70 @@
 
 from __future__ import annotations
 
+import os
 import sys
-import time
-from collections.abc import Iterator
-from contextlib import AbstractContextManager, contextmanager, nullcontext
-from math import isnan
-from types import TracebackType
-from typing import TYPE_CHECKING
+from collections.abc import Callable
+from contextlib import AbstractContextManager, nullcontext
+from importlib.util import find_spec
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
+from .choices import Named
+from .errors import warn
+
 if TYPE_CHECKING:
-    from nispcodec.core.progress import Listener, Progress
+    from nispcodec.core.progress import Listener
 
-PLAIN_INTERVAL = 5.0
+Command = TypeVar("Command", bound=Callable[..., Any])
+
+KINDS = ("auto", "none", "bar", "plain")
 
 
-def encode_progress(quiet: bool) -> AbstractContextManager[Listener]:
-    """Bars on a terminal, a line every few seconds elsewhere, nothing when quiet."""
+def progress_options(command: Command) -> Command:
+    """`--progress` and its short form `--quiet`."""
+    for option in (_quiet, _progress):
+        command = option(command)
+    return command
+
+
+def shown(title: str, progress: str, quiet: bool) -> AbstractContextManager[Listener]:
+    """A listener that shows what it is told on standard error, as `--progress` says.
+
+    By default bars on a terminal, elsewhere a line each ten percent. Without rich there are lines
+    in place of bars. `title` names the work.
+    """
     from nispcodec.core.progress import silent
 
-    if quiet:
+    from .bars import Bars
+    from .lines import Lines
+
+    kind = "none" if quiet else _kind(progress)
+    if kind == "none":
         return nullcontext(silent)
-    return Bars() if sys.stderr.isatty() else nullcontext(Lines())
+    return Bars(title, forced=progress == "bar") if kind == "bar" else Lines(title)
 
 
-@contextmanager
-def working(text: str) -> Iterator[None]:
-    """A spinner beside `text` on a terminal, nothing elsewhere."""
-    if not sys.stderr.isatty():
-        yield
-        return
-    from rich.console import Console
-
-    with Console(stderr=True).status(text):
-        yield
-
-
-class Lines:
-    """A plain line when a stage begins, for every note, and each PLAIN_INTERVAL seconds."""
-
-    def __init__(self) -> None:
-        self._shown: dict[str, tuple[str, float]] = {}
-
-    def __call__(self, update: Progress) -> None:
-        """Print the update if it is worth a line."""
-        stage, when = self._shown.get(update.network, ("", 0.0))
-        now = time.monotonic()
-        if update.note or update.stage != stage or now - when >= PLAIN_INTERVAL:
-            self._shown[update.network] = (update.stage, now)
-            click.echo(described(update), err=True)
+def _kind(progress: str) -> str:
+    """`none`, `bar` or `plain`."""
+    if progress == "auto":
+        able = sys.stderr.isatty() and os.environ.get("TERM") != "dumb"
+        return "bar" if able and _has_rich() else "plain"
+    if progress == "bar" and not _has_rich():
+        warn(["--progress bar needs rich, which is not installed: pip install rich"])
+        return "plain"
+    return progress
 
 
-class Bars:
-    """One bar a network and a line for the stage of the whole, redrawn in place."""
-
-    def __init__(self) -> None:
-        from rich.console import Console
-        from rich.progress import BarColumn, TextColumn
-        from rich.progress import Progress as Rows
-
-        self._rows = Rows(
-            TextColumn("{task.description}", markup=False),
-            BarColumn(bar_width=10),
-            TextColumn("{task.fields[text]}", markup=False),
-            console=Console(stderr=True),
-        )
-        self._tasks: dict[str, int] = {}
-
-    def __enter__(self) -> Listener:
-        self._rows.start()
-        return self
-
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        value: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
-        self._rows.stop()
-
-    def __call__(self, update: Progress) -> None:
-        """Move the bar of the update's network; a note stays above the bars."""
-        from rich.progress import TaskID
-
-        if update.note:
-            self._rows.console.print(described(update), markup=False)
-        if update.network not in self._tasks:
-            self._tasks[update.network] = self._rows.add_task("", total=None, text="")
-        self._rows.update(
-            TaskID(self._tasks[update.network]),
-            description=_head(update),
-            total=update.steps or None,
-            completed=update.step,
-            text=" · ".join(_facts(update)),
-        )
+def _has_rich() -> bool:
+    return "rich" in sys.modules or find_spec("rich") is not None
 
 
-def described(update: Progress) -> str:
-    """One plain line: `uv fit: 100/2000, loss 1.0e-03, held-out 3.1e-04, 12 s left`."""
-    facts = ", ".join([*_facts(update), *([update.note] if update.note else [])])
-    return f"{_head(update)}: {facts}" if facts else _head(update)
-
-
-def _head(update: Progress) -> str:
-    return f"{update.network} {update.stage}".strip()
-
-
-def _facts(update: Progress) -> list[str]:
-    known = {
-        "{}": f"{update.step}/{update.steps}" if update.steps else None,
-        "loss {}": _number(update.loss),
-        "held-out {}": _number(update.error),
-        "{} left": None if isnan(update.seconds_left) else duration(update.seconds_left),
-    }
-    return [text.format(value) for text, value in known.items() if value]
-
-
-def _number(value: float) -> str | None:
-    return None if isnan(value) else f"{value:.1e}"
-
-
-def duration(seconds: float) -> str:
-    """`8 s`, `1 min 20 s`."""
-    minutes, rest = divmod(round(seconds), 60)
-    return f"{minutes} min {rest} s" if minutes else f"{rest} s"
+_progress = click.option(
+    "--progress",
+    type=Named(*KINDS),
+    default="auto",
+    show_default=True,
+    help="auto: bars on a terminal, elsewhere a plain line each ten percent.",
+)
+_quiet = click.option("--quiet", is_flag=True, help="The same as --progress none.")

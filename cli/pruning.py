@@ -7,7 +7,8 @@ from typing import Any, TypeVar
 
 import click
 
-STRATEGIES = ("smallest", "smallest_global", "large_final")
+from .choices import LibraryChoice, pruning_strategies
+from .ranges import Whole
 
 Command = TypeVar("Command", bound=Callable[..., Any])
 
@@ -25,7 +26,7 @@ def _parsed(
     """A rate for all networks, or by name: what is not named is not pruned."""
     given = context.get_parameter_source("prune_rate") is click.core.ParameterSource.COMMANDLINE
     if given and not context.params.get("prune"):
-        raise click.UsageError("--prune-rate needs --prune")
+        raise click.UsageError("--prune-rate: expected --prune beside it, found it alone")
     try:
         if "=" not in value:
             return float(value)
@@ -38,7 +39,7 @@ def _parsed(
 
 _strategy = click.option(
     "--prune",
-    type=click.Choice(STRATEGIES),
+    type=LibraryChoice(pruning_strategies),
     is_eager=True,
     help="Lottery tickets: train, prune, rewind, train again.",
 )
@@ -52,7 +53,7 @@ _rate = click.option(
 )
 _rounds = click.option(
     "--prune-rounds",
-    type=click.IntRange(1),
+    type=Whole(1),
     default=2,
     show_default=True,
     help="Until the rate is reached; each takes as long as an encode.",

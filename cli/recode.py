@@ -1,4 +1,4 @@
-"""`nisp recode`: the same networks in another file."""
+"""`nisp recode`: the same networks and images, stored in another way."""
 
 from __future__ import annotations
 
@@ -8,49 +8,57 @@ from typing import TYPE_CHECKING
 
 import click
 
-from .files import output_option
-from .report import print_group, rate
+from .choices import LibraryChoice, codings, texture_formats
+from .outputs import OutputFile, nisp_suffix, output_option, refuse_overwriting
+from .ranges import Whole
+from .report import print_rate
+from .sources import Source, model_argument, parsed
+from .subcommand import force_option, json_option, subcommand
 
 if TYPE_CHECKING:
     from nispcodec.core.document import Document
 
-CODINGS = ("dense", "coo", "csc", "csr", "dia", "entropy", "delta_init")
-IMAGE_FORMATS = ("webp", "avif", "jpeg")
 
-
-@click.command("recode", short_help="Rewrite a .nisp file with other codings or images.")
-@click.argument("model", type=click.Path(path_type=Path))
-@output_option(".nisp")
+@subcommand("recode", "Rewrite a .nisp file with other codings or images.")
+@model_argument
+@output_option(OutputFile(nisp_suffix))
 @click.option(
-    "--coding", type=click.Choice(CODINGS), help="Of all weights; by default the smallest for each."
+    "--coding",
+    type=LibraryChoice(codings),
+    help="Of all weights; by default the smallest for each.",
 )
-@click.option("--texture-format", type=click.Choice(IMAGE_FORMATS), help="Re-encode the images.")
-@click.option("--texture-quality", type=click.IntRange(1, 100), default=90, show_default=True)
+@click.option("--texture-format", type=LibraryChoice(texture_formats), help="Re-encode the images.")
+@click.option("--texture-quality", type=Whole(1, 100), default=90, show_default=True)
 @click.option("--no-textures", is_flag=True, help="Leave the images out.")
+@force_option
+@json_option
 def command(
-    model: Path,
+    model: Source,
     output: Path,
     coding: str | None,
     texture_format: str | None,
     texture_quality: int,
     no_textures: bool,
+    force: bool,
+    as_json: bool,
 ) -> None:
-    """Rewrite MODEL without touching what its networks compute.
+    """Rewrite MODEL (.nisp, or - for standard input): its networks compute the same.
 
     \b
     Example: nisp recode model.nisp -o small.nisp --texture-format webp
     """
     from nispcodec.core.atomic_write import write_atomic
-    from nispcodec.format import pack, read
+    from nispcodec.format import pack
 
-    document = read(model)
+    refuse_overwriting([output], force)
+    document = parsed(model.read(), model)
     if no_textures:
         document = _without_textures(document)
     elif texture_format is not None:
         document = _with_textures(document, texture_format, texture_quality)
     data = pack(document, coding)
     write_atomic(output, data)
-    print_group(str(output), rate(data))
+    print_rate(output, data, as_json)
 
 
 def _without_textures(document: Document) -> Document:

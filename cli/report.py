@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping
+from pathlib import Path
 from typing import Any
 
 import click
@@ -37,13 +38,31 @@ def print_group(title: str, values: Mapping[str, Any], indent: str = "") -> None
             click.echo(f"{indent}  {name:<22} {number(value)}")
 
 
+def print_written(paths: list[Path], indent: str = "") -> None:
+    """A line for each file that was written, with its bytes."""
+    for path in paths:
+        click.echo(f"{indent}{path}: {path.stat().st_size:,} bytes")
+
+
+def print_rate(output: Path, data: bytes, as_json: bool) -> None:
+    """What the bytes of a `.nisp` file that was written are spent on."""
+    if as_json:
+        print_json({"file": str(output), "bytes": rate(data)})
+    else:
+        print_group(str(output), rate(data))
+
+
 def _unnamed(values: Mapping[str, Any]) -> dict[str, Any]:
     return {name: value for name, value in values.items() if name != "name"}
 
 
 def number(value: Any) -> str:
-    """Four significant digits; whole numbers with thousands apart."""
-    if isinstance(value, bool) or not isinstance(value, int | float):
+    """Four significant digits; whole numbers with thousands apart; lists with commas."""
+    if isinstance(value, list | tuple):
+        return ", ".join(number(each) for each in value)
+    if isinstance(value, bool):
+        return "yes" if value else "no"
+    if not isinstance(value, int | float):
         return str(value)
     if isinstance(value, int):
         return f"{value:,}"

@@ -7,22 +7,37 @@ from typing import TYPE_CHECKING
 
 import click
 
-from .files import output_option
-from .progress import encode_progress
-from .report import print_json
+from .choices import exact_picture_suffixes
+from .outputs import OutputFile, output_option, refuse_overwriting
+from .progress import progress_options, shown
+from .ranges import Whole
+from .report import print_json, print_written, rate
+from .sources import is_nisp, parsed, read_file, read_mesh
+from .subcommand import force_option, json_option, subcommand
 
 if TYPE_CHECKING:
     from nispcodec.core.asset import TexturedMesh
     from nispcodec.model import NispModel
 
 
-@click.command("sheet", short_help="Draw original and decode side by side, with the numbers.")
+@subcommand("sheet", "Draw original and decode side by side, with the numbers.")
 @click.argument("original", type=click.Path(path_type=Path))
 @click.argument("decoded", type=click.Path(path_type=Path))
-@output_option(".png", ".webp")
-@click.option("--size", type=click.IntRange(32, 2048), default=320, show_default=True)
-@click.option("--json", "as_json", is_flag=True, help="The numbers, as JSON.")
-def command(original: Path, decoded: Path, output: Path, size: int, as_json: bool) -> None:
+@output_option(OutputFile(exact_picture_suffixes))
+@click.option("--size", type=Whole(32, 2048), default=320, show_default=True)
+@force_option
+@progress_options
+@json_option
+def command(
+    original: Path,
+    decoded: Path,
+    output: Path,
+    size: int,
+    force: bool,
+    progress: str,
+    quiet: bool,
+    as_json: bool,
+) -> None:
     """Draw DECODED (a .nisp or a mesh file) beside the mesh file ORIGINAL on one page.
 
     Four views, close-ups of the largest differences, UV layouts, and the numbers of `nisp compare`.
@@ -32,34 +47,28 @@ def command(original: Path, decoded: Path, output: Path, size: int, as_json: boo
     Example: nisp sheet model.obj model.nisp -o sheet.png
     """
     from nispcodec.core.atomic_write import write_atomic
-    from nispcodec.io.load import load_mesh
     from nispcodec.render.images import image_bytes
     from nispcodec.render.sheet import sheet
 
-    mesh, other = load_mesh(original), _decoded(decoded)
-    title = f"{original.name}, {len(mesh.faces):,} faces: {decoded.name}, {_size(decoded)}"
-    with encode_progress(quiet=False) as listener:
-        page = sheet(mesh, other, size, title, listener)
+    refuse_overwriting([output], force)
+    mesh, (other, kilobytes) = read_mesh(original), _decoded(decoded)
+    title = f"{original.name}, {len(mesh.faces):,} faces: {decoded.name}, {kilobytes}"
+    with shown("sheet", progress, quiet) as listen:
+        page = sheet(mesh, other, size, title, listen)
     write_atomic(output, image_bytes([page.picture], output.suffix.lower()))
     if as_json:
-        print_json(page.report)
+        print_json({"file": str(output), **page.report})
     else:
-        click.echo(str(output))
+        print_written([output])
 
 
-def _decoded(path: Path) -> NispModel | TexturedMesh:
-    import nispcodec
-    from nispcodec.io.load import load_mesh
+def _decoded(path: Path) -> tuple[NispModel | TexturedMesh, str]:
+    """A model or a mesh, and how large its file is: a `.nisp` without its textures too."""
+    from nispcodec.model import NispModel
 
-    return nispcodec.load(path) if path.suffix.lower() == ".nisp" else load_mesh(path)
-
-
-def _size(path: Path) -> str:
-    """The bytes of a file; of a `.nisp` without its textures too."""
-    from .report import rate
-
-    data = path.read_bytes()
-    if path.suffix.lower() != ".nisp":
-        return f"{len(data) / 1e3:,.1f} kB"
-    part = rate(data)
-    return f"{part['geometry_uv'] / 1e3:,.1f} kB and textures of {part['textures'] / 1e3:,.1f} kB"
+    if not is_nisp(path):
+        return read_mesh(path), f"{path.stat().st_size / 1e3:,.1f} kB"
+    data = read_file(path)
+    model, part = NispModel(parsed(data, path)), rate(data)
+    geometry, textures = part["geometry_uv"] / 1e3, part["textures"] / 1e3
+    return model, f"{geometry:,.1f} kB and textures of {textures:,.1f} kB"

@@ -4,28 +4,37 @@ from __future__ import annotations
 
 from pathlib import Path
 
-import click
+from .errors import warn
+from .outputs import folder_option, listed, make_folder, refuse_overwriting
+from .report import print_json, print_written
+from .sources import Source, model_argument, parsed
+from .subcommand import force_option, json_option, subcommand
 
 
-@click.command("unpack", short_help="Write the textures of a .nisp file.")
-@click.argument("model", type=click.Path(path_type=Path))
-@click.option("-o", "--output", type=click.Path(path_type=Path), required=True, help="A folder.")
-def command(model: Path, output: Path) -> None:
-    """Write MODEL's images, byte for byte, into a folder: to look at, or to edit.
+@subcommand("unpack", "Write the textures of a .nisp file.")
+@model_argument
+@folder_option
+@force_option
+@json_option
+def command(model: Source, output: Path, force: bool, as_json: bool) -> None:
+    """Write the images of MODEL (.nisp, or - for standard input), byte for byte, into a folder.
 
-    `nisp retexture` puts them back.
+    To look at, or to edit: `nisp retexture` puts them back.
 
     \b
     Example: nisp unpack model.nisp -o textures
     """
     from nispcodec.core.atomic_write import write_atomic
-    from nispcodec.format import read
 
-    textures = read(model).textures
-    output.mkdir(parents=True, exist_ok=True)
-    for texture in textures:
-        path = output / texture.name  # a bare file name: the format allows no other
+    textures = parsed(model.read(), model).textures
+    paths = [output / texture.name for texture in textures]  # bare names: no other is allowed
+    refuse_overwriting(paths, force)
+    make_folder(output)
+    for path, texture in zip(paths, textures, strict=True):
         write_atomic(path, texture.data)
-        click.echo(str(path))
     if not textures:
-        click.echo(f"nisp: warning: {model} holds no textures", err=True)
+        warn([f"{model} holds no textures"])
+    if as_json:
+        print_json({"files": listed(paths)})
+    else:
+        print_written(paths)

@@ -2,21 +2,27 @@
 
 from __future__ import annotations
 
-from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 
 from .report import print_json
+from .sources import Source, model_argument, no_nisp
+from .subcommand import json_option, subcommand
+
+if TYPE_CHECKING:
+    from nispcodec.core.errors import FormatError
 
 
-@click.command("verify", short_help="Check a .nisp file.")
-@click.argument("model", type=click.Path(path_type=Path))
-@click.option("--json", "as_json", is_flag=True, help="As JSON.")
+@subcommand("verify", "Check a .nisp file.")
+@model_argument
+@json_option
 @click.pass_context
-def command(ctx: click.Context, model: Path, as_json: bool) -> None:
-    """Check MODEL: structure, checksums, caps, canonical form, finite weights, images.
+def command(ctx: click.Context, model: Source, as_json: bool) -> None:
+    """Check MODEL (.nisp, or - for standard input).
 
-    The exit code is 0 if it is sound and 1 if not.
+    Structure, checksums, caps, canonical form, finite weights, images. The exit code is 0 if it is
+    sound, 1 if not, 2 if it cannot be read.
 
     \b
     Example: nisp verify model.nisp
@@ -24,14 +30,23 @@ def command(ctx: click.Context, model: Path, as_json: bool) -> None:
     from nispcodec.core.texture import decode_image
     from nispcodec.format.verify import verify
 
-    problems = verify(model.read_bytes(), decode_image)
+    data = model.read()
+    problems = verify(data, decode_image)
     if as_json:
-        names = ("section", "field", "expected", "found")
-        listed = [{name: str(getattr(each, name)) for name in names} for each in problems]
-        print_json({"file": str(model), "sound": not problems, "problems": listed})
-    elif problems:
-        for problem in problems:
-            click.echo(f"{model}: {problem}")
+        faults = [_fault(each) for each in problems]
+        print_json({"file": str(model), "sound": not problems, "problems": faults})
     else:
-        click.echo(f"{model}: sound")
+        _print_problems(model, no_nisp(data), problems)
     ctx.exit(1 if problems else 0)
+
+
+def _fault(problem: FormatError) -> dict[str, str]:
+    names = ("section", "field", "expected", "found")
+    return {name: str(getattr(problem, name)) for name in names}
+
+
+def _print_problems(model: Source, wrong: str, problems: list[FormatError]) -> None:
+    """`wrong`: what is said of a file that is no `.nisp` at all."""
+    said = [wrong] if wrong else [str(each) for each in problems] or ["sound"]
+    for each in said:
+        click.echo(f"{model}: {each}")

@@ -19,6 +19,11 @@ from nispcodec.model import NispModel
 SIZES = (16, 8192)
 
 
+def baked_names(model: NispModel) -> dict[str, str]:
+    """The file name of each texture that `rebaked` makes, by its slot."""
+    return {slot: f"baked_{slot}.png" for slot in ("base_color", *further_slots(model))}
+
+
 def rebaked(model: NispModel, mesh: TexturedMesh, size: int = 1024) -> TexturedMesh:
     """The mesh with one material: textures of `size` x `size` texels for the model's maps.
 
@@ -40,12 +45,13 @@ def rebaked(model: NispModel, mesh: TexturedMesh, size: int = 1024) -> TexturedM
     if further_slots(model):
         frames = frames_at(mesh, found.faces, found.weights)
         pictures |= baked_maps(model, points, frames)
+    names = baked_names(model)
     return replace(
         mesh,
         face_materials=np.zeros_like(mesh.face_materials),
         materials=(_material(mesh, list(pictures), translucent),),
         textures=tuple(
-            Texture(f"baked_{slot}.png", _png(values, found, size), "image/png")
+            Texture(names[slot], _png(values, found, size), "image/png")
             for slot, values in pictures.items()
         ),
     )

@@ -18,6 +18,8 @@ class Progress:
                   uv mean distance in the network's [0, 1]^2 given the true chart
     seconds_left  estimate for this network
     note          something worth a line of its own, such as a retry
+    overall       share of the whole work that is done, 0 to 1, never less than told before;
+                  NaN when it is not known
     """
 
     network: str = ""
@@ -28,6 +30,7 @@ class Progress:
     error: float = float("nan")
     seconds_left: float = float("nan")
     note: str = ""
+    overall: float = float("nan")
 
 
 Listener = Callable[[Progress], None]

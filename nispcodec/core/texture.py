@@ -36,6 +36,23 @@ if TYPE_CHECKING:
 _BROKEN = (OSError, ValueError, SyntaxError, EOFError, struct.error)
 
 
+def image_size(texture: Texture) -> tuple[int, int]:
+    """Width and height in pixels, by the image's header alone.
+
+    Raises MeshError, naming the texture, for bytes that are no image.
+    """
+    import PIL.Image
+
+    try:
+        with (
+            warnings.catch_warnings(action="ignore", category=PIL.Image.DecompressionBombWarning),
+            PIL.Image.open(io.BytesIO(texture.data)) as image,
+        ):
+            return image.size
+    except (*_BROKEN, PIL.Image.DecompressionBombError) as why:
+        raise MeshError(f"texture {texture.name}: expected an image, found: {why}") from why
+
+
 def decode_image(texture: Texture) -> Float32Array:
     """The texture's pixels: (h, w, 4) float32 in [0, 1], RGBA as stored, top row first.
 

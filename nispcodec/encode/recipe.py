@@ -16,6 +16,7 @@ from nispcodec.encode.config import EncodeConfig, Tuning
 from nispcodec.encode.fitting import fit
 from nispcodec.encode.report import measured
 from nispcodec.encode.single_precision import short_frame, short_uv_map
+from nispcodec.encode.stages import with_overall
 from nispcodec.geometry.analysis import Analysis, analyze
 from nispcodec.model import NispModel
 
@@ -35,6 +36,7 @@ def encode(
     network does not converge.
     """
     config, tuning = config or EncodeConfig(), tuning or Tuning()
+    progress = with_overall(progress, config, tuning.training)
     materials, textures = appearance(mesh, config, progress)
     progress(Progress(stage="charts and hidden walls"))
     analysis = analyze(mesh, config.seed, tuning.geometry_of(config.preset))

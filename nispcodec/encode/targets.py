@@ -47,10 +47,13 @@ class FitContext:
     def probe(self) -> dict[str, float]:
         """The held-out errors of the probes, by name."""
         errors: dict[str, float] = {}
+        steps: dict[str, int] = {}
 
         def heard(progress: Progress) -> None:
             errors[progress.network] = progress.error
-            self.listen(Progress(stage="probe how much there is to learn"))
+            steps[progress.network] = progress.step
+            stage, done = "probe how much there is to learn", min(steps.values())
+            self.listen(Progress(stage=stage, step=done, steps=progress.steps))
 
         self.fit(probes(self.problem), heard)
         return errors

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
+
 from nispcodec.core.arrays import Float32Array
-from nispcodec.core.asset import TexturedMesh
+from nispcodec.core.asset import Material, Texture, TexturedMesh
 from nispcodec.core.atomic_write import write_atomic
 from nispcodec.core.errors import MeshError
 from nispcodec.io.write.colors import untextured
@@ -56,6 +59,29 @@ def write_mesh(
         written.append(path.with_name(name))
         write_atomic(written[-1], data)
     return written
+
+
+def mesh_paths(
+    path: Path, materials: Sequence[Material], textures: Sequence[Texture], colored: bool = False
+) -> list[Path]:
+    """The files that `write_mesh` writes for any mesh of these materials and textures.
+
+    `colored` is for a mesh that is written with colors. Raises MeshError as `write_mesh` does, for
+    a suffix, and for colors in a format that holds none.
+    """
+    names = tuple(replace(each, data=b"", mime="image/png") for each in textures)
+    mesh = replace(_triangle(), materials=tuple(materials), textures=names)
+    colors = np.ones((3, 4), np.float32) if colored else None
+    if colors is not None:
+        mesh = untextured(mesh, colors)
+    return [path.with_name(name) for name in _files(mesh, path, colors)]
+
+
+def _triangle() -> TexturedMesh:
+    """The smallest mesh with UVs."""
+    corners = np.arange(3, dtype=np.int32)[None]
+    plain = TexturedMesh.geometry_only(np.eye(3), corners, "")
+    return replace(plain, uvs=np.eye(3)[:, :2], uv_faces=corners)
 
 
 def _files(mesh: TexturedMesh, path: Path, colors: Float32Array | None) -> dict[str, bytes]:

@@ -13,7 +13,9 @@ from nispcodec.core.arrays import Float32Array
 if TYPE_CHECKING:
     import PIL.Image
 
-SUFFIXES = (".png", ".webp", ".gif")
+EXACT = (".png", ".webp")
+"""Keep every color; a GIF has 256."""
+SUFFIXES = (*EXACT, ".gif")
 TURN_SECONDS = 4.0
 
 

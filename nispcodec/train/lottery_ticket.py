@@ -60,14 +60,14 @@ def lottery_ticket(
 
 
 def _rounds(listen: Listener, count: int) -> Iterator[Listener]:
-    """A listener for each round, which says which it is and how long all of them take."""
+    """A listener for each round, which says which it is, and how far and how long all of them."""
     started = time.monotonic()
     for number in range(count):
 
         def heard(update: Progress, number: int = number) -> None:
-            done = (number + update.step / update.steps) / count
-            left = (time.monotonic() - started) / done * (1 - done)
+            step, steps = number * update.steps + update.step, count * update.steps
+            left = (time.monotonic() - started) * (steps - step) / step
             stage = f"{update.stage}, round {number + 1} of {count}"
-            listen(replace(update, stage=stage, seconds_left=left))
+            listen(replace(update, stage=stage, step=step, steps=steps, seconds_left=left))
 
         yield heard

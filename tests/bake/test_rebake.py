@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from nispcodec.bake.rebake import rebaked
+from nispcodec.bake.rebake import baked_names, rebaked
 from nispcodec.bake.tangents import frames_at
 from nispcodec.core.asset import Material, TexturedMesh, TextureMap
 from nispcodec.core.errors import MeshError
@@ -52,6 +52,14 @@ def test_margin_repeats_the_nearest_texel(model: NispModel, plate: TexturedMesh)
     image = decode_image(rebaked(model, plate, 64).textures[0])
     np.testing.assert_array_equal(image[32, 0], image[32, 7])
     assert image[0, 0, :3].sum() > 0
+
+
+def test_the_names_are_known_before_the_textures(shaded: NispModel, plate: TexturedMesh) -> None:
+    names = baked_names(shaded)
+    mesh = rebaked(shaded, plate, 16)
+    assert [texture.name for texture in mesh.textures] == list(names.values())
+    assert list(mesh.materials[0].maps) == list(names)
+    assert len(names) > 1
 
 
 def test_one_material_and_one_texture_remain(model: NispModel) -> None:

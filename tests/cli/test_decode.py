@@ -9,7 +9,8 @@ import pytest
 import trimesh
 
 from nispcodec.io.load import load_mesh
-from tests.cli.conftest import nisp
+from nispcodec.model import NispModel
+from tests.cli.conftest import done, nisp, refused
 
 
 def decoded(model: Path, out: Path, *options: object) -> Path:
@@ -49,10 +50,29 @@ def test_rebake(model: Path, tmp_path: Path) -> None:
 
 def test_contradictions_are_refused(model: Path, tmp_path: Path) -> None:
     for options in (("--colors", "--rebake"), ("--faces", 2), ("--target-error", 0)):
-        result = nisp("decode", model, "-o", tmp_path / "out.glb", *options)
-        assert result.exit_code == 2
-        assert "Usage:" in result.stderr
-    result = nisp("decode", model, "-o", tmp_path / "out.stl", "--resolution", 16, "--colors")
-    assert result.exit_code == 2
-    assert "STL holds no colors" in result.stderr
+        refused(nisp("decode", model, "-o", tmp_path / "out.glb", *options), "expected", "found")
     assert not list(tmp_path.glob("out.*"))
+
+
+def test_colors_that_a_format_cannot_hold_are_refused_before_the_work(
+    model: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(NispModel, "to_mesh", None)
+    result = nisp("decode", model, "-o", tmp_path / "out.stl", "--colors")
+    refused(result, "STL holds no colors")
+
+
+def test_it_says_bytes_seconds_faces_and_how_to_get_fewer(model: Path, tmp_path: Path) -> None:
+    out = tmp_path / "out.obj"
+    result = done("decode", model, "-o", out, "--resolution", 24)
+    assert f"{out}: {len(load_mesh(out).faces):,} faces in " in result.stdout
+    assert " s\n" in result.stdout
+    for path in (out, out.with_suffix(".mtl"), tmp_path / "out_tiny.png"):
+        assert f"{path}: {path.stat().st_size:,} bytes" in result.stdout
+    assert "--faces" in result.stdout
+    assert "--target-error" in result.stdout
+
+
+def test_who_asked_for_fewer_is_not_told_how(model: Path, tmp_path: Path) -> None:
+    result = done("decode", model, "-o", tmp_path / "out.glb", "--resolution", 24, "--faces", 90)
+    assert "--faces" not in result.stdout

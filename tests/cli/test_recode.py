@@ -4,7 +4,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from nispcodec_cli import recode
 
 from nispcodec.core.document import Document
 from nispcodec.format import unpack
@@ -31,10 +30,6 @@ def same_answers(before: Document, after: Document) -> bool:
         and np.array_equal(first.charts(points), second.charts(points))
         and np.array_equal(first.uv(points), second.uv(points))
     )
-
-
-def test_it_knows_every_coding() -> None:
-    assert recode.CODINGS == registry.CODINGS
 
 
 @pytest.mark.parametrize("coding", registry.CODINGS)

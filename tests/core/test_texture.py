@@ -11,6 +11,7 @@ from nispcodec.core.errors import MeshError
 from nispcodec.core.texture import (
     base_color,
     decode_image,
+    image_size,
     linear_to_srgb,
     reencode,
     sample_texture,
@@ -31,6 +32,18 @@ def sampled(
     u: float, v: float, wrap: tuple[str, str] = ("repeat", "repeat"), filter: str = "linear"
 ) -> float:
     return float(sample_texture(SMALL, np.array([[u, v]]), wrap, filter)[0, 0])
+
+
+@pytest.mark.parametrize("kind", ["PNG", "JPEG", "WEBP", "AVIF"])
+def test_the_size_is_that_of_the_pixels(kind: str) -> None:
+    texture = encoded(PIL.Image.new("RGB", (30, 20)), kind)
+    assert image_size(texture) == (30, 20)
+    assert decode_image(texture).shape == (20, 30, 4)
+
+
+def test_the_size_of_what_is_no_image() -> None:
+    with pytest.raises(MeshError, match=r"broken\.png"):
+        image_size(Texture("broken.png", b"no image", "image/png"))
 
 
 def test_origin_is_bottom_left() -> None:

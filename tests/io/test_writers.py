@@ -18,7 +18,7 @@ from nispcodec.core.asset import Material, Texture, TexturedMesh, TextureMap
 from nispcodec.core.errors import MeshError, NispError
 from nispcodec.core.texture import linear_to_srgb
 from nispcodec.io.load import load_mesh
-from nispcodec.io.save import write_mesh
+from nispcodec.io.save import SUFFIXES, mesh_paths, write_mesh
 from nispcodec.io.write.glb import glb_bytes
 from nispcodec.io.write.obj import obj_files
 from tests import tiny
@@ -208,6 +208,22 @@ def test_far_and_tiny_meshes_keep_their_shape(
     again = load_mesh(write_mesh(moved, tmp_path / f"out{suffix}")[-1])
     placed = (again.positions - offset) / scale
     assert triangles(placed, again.faces) == triangles(mesh.positions, mesh.faces)
+
+
+@pytest.mark.parametrize("suffix", SUFFIXES)
+@pytest.mark.parametrize("colored", [False, True])
+def test_the_paths_are_known_before_the_mesh(
+    mesh: TexturedMesh, tmp_path: Path, suffix: str, colored: bool
+) -> None:
+    path = tmp_path / f"my.mesh{suffix.upper()}"
+    colors = np.ones((len(mesh.positions), 4), np.float32) if colored else None
+    if colored and suffix == ".stl":
+        with pytest.raises(MeshError, match="STL holds no colors"):
+            mesh_paths(path, mesh.materials, mesh.textures, colored)
+        return
+    expected = mesh_paths(path, mesh.materials, mesh.textures, colored)
+    assert expected == write_mesh(mesh, path, colors)
+    assert expected[-1] == path
 
 
 def test_obj_text(mesh: TexturedMesh) -> None:

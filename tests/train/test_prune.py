@@ -217,6 +217,8 @@ def test_rounds_are_told_and_only_the_last_is_quantized() -> None:
     stages = list(dict.fromkeys(update.stage for update in seen))
     fits = [f"fit, round {number} of 3" for number in (1, 2, 3)]
     assert stages == [*fits, "quantize, round 3 of 3"]
+    assert [update.step for update in seen] == sorted(update.step for update in seen)
+    assert {update.steps for update in seen} == {150}
     assert seen[-1].seconds_left == 0
     assert network.steps
     for name in everything(task.spec):
