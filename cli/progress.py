@@ -58,7 +58,7 @@ def _kind(progress: str) -> str:
 
 
 def _has_rich() -> bool:
-    return "rich" in sys.modules or find_spec("rich") is not None
+    return find_spec("rich") is not None
 
 
 _progress = click.option(

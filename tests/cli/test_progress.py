@@ -11,7 +11,6 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from nispcodec_cli import progress
 from nispcodec_cli.bars import Bars
 from nispcodec_cli.lines import Lines, Whole, duration, facts
 from nispcodec_cli.progress import shown
@@ -123,10 +122,9 @@ def test_bars_where_they_are_asked_for(encode: Any) -> None:
 @pytest.fixture
 def no_rich(monkeypatch: pytest.MonkeyPatch) -> None:
     """As on a machine without rich."""
-    monkeypatch.setattr(progress, "find_spec", lambda _: None)
     for name in [each for each in sys.modules if each.partition(".")[0] == "rich"]:
         monkeypatch.delitem(sys.modules, name)
-    monkeypatch.setitem(sys.modules, "rich.progress", None)
+    monkeypatch.setitem(sys.modules, "rich", None)
 
 
 def test_without_rich_lines_take_the_place_of_bars(no_rich: None, encode: Any) -> None:
