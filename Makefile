@@ -26,10 +26,10 @@ setup: .venv/ready
 	touch $@
 
 demo: setup
-	$(BIN)/nisp sample -o demo
+	$(BIN)/nisp sample -o demo --force
 	$(BIN)/nisp encode demo/sample.obj -o demo/sample.nisp
-	$(BIN)/nisp decode demo/sample.nisp --mesh -o demo/decoded.glb
-	$(BIN)/nisp render demo/sample.nisp -o demo/sample.png
+	$(BIN)/nisp decode demo/sample.nisp --mesh -o demo/decoded.glb --force
+	$(BIN)/nisp render demo/sample.nisp -o demo/sample.png --force
 	$(BIN)/nisp compare demo/sample.obj demo/decoded.glb
 	ls -l demo
 

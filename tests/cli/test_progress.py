@@ -21,10 +21,11 @@ from tests import tiny
 from tests.cli.conftest import UPDATES, done, nisp
 
 LONG = ("encode", "decode", "render", "sheet", "compare")
+Captured = pytest.CaptureFixture[str]
 PERCENT = re.compile(r"^encode +(\d+) %", re.MULTILINE)
 
 
-def lines(updates: list[Progress], capsys: pytest.CaptureFixture[str]) -> list[str]:
+def lines(updates: list[Progress], capsys: Captured) -> list[str]:
     with Lines("encode") as listen:
         for update in updates:
             listen(update)
@@ -32,7 +33,7 @@ def lines(updates: list[Progress], capsys: pytest.CaptureFixture[str]) -> list[s
 
 
 def test_a_line_each_ten_percent_of_the_whole_and_not_of_each_network(
-    capsys: pytest.CaptureFixture[str],
+    capsys: Captured,
 ) -> None:
     updates = [
         Progress(network, "fit", step, 1000, overall=step / 1000)
@@ -45,23 +46,23 @@ def test_a_line_each_ten_percent_of_the_whole_and_not_of_each_network(
 
 
 def test_a_line_says_what_is_done_and_how_long_it_takes_yet(
-    capsys: pytest.CaptureFixture[str],
+    capsys: Captured,
 ) -> None:
     first, last = lines(UPDATES[2:], capsys)[-2:]
     assert re.fullmatch(r"encode  50 %, about .* s left: sdf fit 11 %, uv fit 50 %", first)
     assert re.fullmatch(r"encode 100 %: .* s", last)
 
 
-def test_a_leap_is_one_line(capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_leap_is_one_line(capsys: Captured) -> None:
     told = lines([Progress(stage="a", overall=0.0), Progress(stage="b", overall=0.9)], capsys)
     assert PERCENT.findall("\n".join(told)) == ["90", "100"]
 
 
-def test_a_note_is_a_line_of_its_own(capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_note_is_a_line_of_its_own(capsys: Captured) -> None:
     assert lines(UPDATES, capsys).count("sdf fit: diverged at step 11, retrying") == 1
 
 
-def test_who_fails_is_not_said_to_be_done(capsys: pytest.CaptureFixture[str]) -> None:
+def test_who_fails_is_not_said_to_be_done(capsys: Captured) -> None:
     with pytest.raises(FitError), Lines("encode"):
         raise FitError("no")
     assert capsys.readouterr().err == ""
@@ -172,7 +173,7 @@ def test_auto_without_rich_is_plain_on_a_terminal_too(
 
 
 def test_there_is_one_bar_for_the_whole_and_one_a_network(
-    capsys: pytest.CaptureFixture[str],
+    capsys: Captured,
 ) -> None:
     pytest.importorskip("rich", reason="rich is not installed")
     with Bars("encode") as listen:
