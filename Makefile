@@ -46,7 +46,7 @@ package: setup
 
 test: lint docs package
 	$(BIN)/python -m benchmarks.status
-	$(BIN)/pytest -n 2
+	$(BIN)/pytest -n 2 --cov --cov-report=term
 
 fuzz: setup
 	$(BIN)/pip install --disable-pip-version-check -q -c constraints.txt -e '.[fuzz]'

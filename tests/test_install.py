@@ -53,6 +53,7 @@ def model(tmp_path: Path) -> Path:
     return path
 
 
+@pytest.mark.slow
 def test_a_plain_install_decodes_queries_verifies_and_converts(model: Path, tmp_path: Path) -> None:
     assert "sound" in works("verify", model)
     assert works("info", model)

@@ -1,4 +1,4 @@
-"""Write the measured tables and the plot into docs/benchmarks.md, from results that are committed.
+"""Write measured tables and a plot into README.md and docs/benchmarks.md, from committed results.
 
     python -m benchmarks.report.document --bench build/bench
 
@@ -24,7 +24,10 @@ from benchmarks.report.markdown import table
 from benchmarks.studies.crossover import RESULTS as CROSSOVER
 from nispcodec.core.atomic_write import write_atomic
 
-DOCUMENT = Path("docs/benchmarks.md")
+DOCUMENT, README = Path("docs/benchmarks.md"), Path("README.md")
+SHORT_BEGIN = "<!-- short table: python -m benchmarks.report.document -->\n"
+SHORT_END = "<!-- end of short table -->\n"
+SHORT_HEAD = ("asset", "OBJ", "`.nisp`", "simplify + Draco, as near", "distance", "encode")
 BEGIN, END = "<!-- table: python -m benchmarks.report.document -->\n", "<!-- end of table -->\n"
 HEAD = (
     "asset", "faces", "OBJ", "`.nisp`, no textures", "encode", "distance", "UV median", "charts",
@@ -71,6 +74,18 @@ def measured() -> str:
     machine = results["machine"]
     where = f"on {machine['cores']} cores, {machine['processor']}"
     return table(HEAD, rows) + f"\nMeasured at {commits(results)}, {where}.\n"
+
+
+def shortened() -> str:
+    """What the README shows of every asset."""
+    measured_assets = read_result(RESULTS)["assets"]
+    duels = read_result(DUEL)["assets"]
+    rows = []
+    for name, record in sorted(measured_assets.items()):
+        _, _, mesh, ours, seconds, distance, *_ = row(name, record)
+        theirs = kilobytes(duels[name]["rival_bytes"]["distance and uv"])
+        rows.append([name, mesh, ours, f"{theirs} kB", distance, seconds])
+    return table(SHORT_HEAD, rows)
 
 
 def compared() -> str:
@@ -168,6 +183,11 @@ def written(text: str) -> str:
     return replaced(text, CROSSING_BEGIN, CROSSING_END, crossing())
 
 
+def introduced(text: str) -> str:
+    """The README with its table as the committed results have it."""
+    return replaced(text, SHORT_BEGIN, SHORT_END, shortened())
+
+
 @click.command()
 @click.option("--bench", type=click.Path(path_type=Path, exists=True), help="Keep these results.")
 def main(bench: Path | None) -> None:
@@ -175,6 +195,7 @@ def main(bench: Path | None) -> None:
     if bench is not None:
         keep(bench)
     write_atomic(DOCUMENT, written(DOCUMENT.read_text(encoding="utf-8")).encode())
+    write_atomic(README, introduced(README.read_text(encoding="utf-8")).encode())
 
 
 if __name__ == "__main__":

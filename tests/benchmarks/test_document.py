@@ -5,8 +5,10 @@ import pytest
 from benchmarks.measuring.build import HERE
 from benchmarks.report.document import (
     DOCUMENT,
+    README,
     commits,
     duel_cells,
+    introduced,
     percentage,
     replaced,
     size_of,
@@ -66,3 +68,9 @@ def test_a_table_says_where_it_was_measured() -> None:
     assert (
         commits({"assets": {"a": {"commit": "two"}, "b": {"commit": "one"}}}) == "commit one, two"
     )
+
+
+def test_the_readme_says_what_the_results_say(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(HERE)
+    text = README.read_text(encoding="utf-8")
+    assert introduced(text) == text

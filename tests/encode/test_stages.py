@@ -33,6 +33,7 @@ def rounded(network: str) -> Progress:
     return Progress(network, "quantize", step=100, steps=100, note="done")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "config",
     [

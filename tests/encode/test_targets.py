@@ -64,6 +64,7 @@ def document(networks: Mapping[str, Network]) -> Document:
     return Document(frame, TABLE, (Material("one"),), (), sdf=networks["sdf"])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("wanted", [1500, 3000])
 def test_the_file_has_the_size_that_was_asked_for(wanted: int) -> None:
     data = pack(document(fit_to_size(fitting(really), wanted, document)))

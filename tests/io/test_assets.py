@@ -11,6 +11,7 @@ from nispcodec.geometry.symmetry import Symmetry
 from nispcodec.io.load import load_mesh
 from tests.samplers import analysis_of
 
+pytestmark = pytest.mark.assets
 ASSETS = Path(__file__).resolve().parents[3] / "shared" / "assets"
 
 # Faces, charts, materials, textures, maps of the first material.
