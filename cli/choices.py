@@ -43,6 +43,13 @@ def presets() -> Iterable[str]:
     return PRESETS
 
 
+def engines() -> Iterable[str]:
+    """What trains."""
+    from nispcodec.encode.config import ENGINES
+
+    return ENGINES
+
+
 def texture_formats() -> Iterable[str]:
     """What images can be made again as."""
     from nispcodec.encode.config import TEXTURE_FORMATS

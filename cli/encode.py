@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from .choices import LibraryChoice, presets, texture_formats
+from .choices import LibraryChoice, engines, presets, texture_formats
 from .errors import warn
 from .lines import duration
 from .outputs import OutputFile, nisp_suffix, output_option, refuse_overwriting_others
@@ -48,6 +48,13 @@ if TYPE_CHECKING:
     help="Mean distance to the surface, such as 5e-4 (of the asset's radius).",
 )
 @click.option("--seed", type=Whole(0), default=0, show_default=True, help="Of everything random.")
+@click.option(
+    "--engine",
+    type=LibraryChoice(engines),
+    default="auto",
+    show_default=True,
+    help="What trains: native is many times as fast as torch, which has CUDA.",
+)
 @click.option(
     "--device", default="auto", show_default=True, help="auto, cpu, cuda or cuda:N.", metavar="NAME"
 )

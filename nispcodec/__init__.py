@@ -92,13 +92,12 @@ def encode(
     `Progress`. `tuning` holds numbers that are not meant to be chosen by users
     (`nispcodec.encode.config`).
 
-    Each network has a process of its own. Outside of Linux, and with CUDA, these start afresh: a
-    script then wants `if __name__ == "__main__":` around its calls. Ctrl-C and errors leave nothing
-    behind. Raises TypeError for what is neither mesh nor path, MeshError for a file that cannot be
-    read and when nothing of the mesh can be held by a signed distance, FitError when a network does
-    not converge, NispError for a target that cannot be met and without the extra.
+    Ctrl-C and errors leave nothing behind. Raises TypeError for what is neither mesh nor path,
+    MeshError for a file that cannot be read and when nothing of the mesh can be held by a signed
+    distance, FitError when a network does not converge or the device is not there, NispError for a
+    target that cannot be met and for a package that is missing.
     """
-    require("torch", "scipy", "igl", extra="encode", what_for="encoding")
+    require("scipy", "igl", extra="encode", what_for="encoding")
     from nispcodec.encode import recipe
 
     return recipe.encode(_mesh(mesh), config, progress, tuning)

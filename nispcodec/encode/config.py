@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from nispcodec.train.prune import Pruning
 
 TEXTURE_FORMATS = ("webp", "avif", "jpeg")
+ENGINES = ("auto", "native", "torch")
 PRESETS = (*TrainConfig().budgets, "paper")
 
 
@@ -26,7 +27,8 @@ class EncodeConfig:
 
     preset          one of `PRESETS`
     seed            of everything random: the same input, seed and threads give the same bytes
-    device          "auto", "cpu", "cuda"
+    engine          what trains: "native", "torch"; "auto": native wherever that can
+    device          "auto", "cpu", "cuda"; CUDA trains with torch
     threads         cores to use; 0: all
     pad_textures    fills what no face uses of an image with the colors beside it
     texture_format  None keeps the image files as they are; "webp", "avif", "jpeg" re-encode them
@@ -43,6 +45,7 @@ class EncodeConfig:
 
     preset: str = "balanced"
     seed: int = 0
+    engine: str = "auto"
     device: str = "auto"
     threads: int = 0
     pad_textures: bool = False
@@ -57,6 +60,7 @@ class EncodeConfig:
 
     def __post_init__(self) -> None:
         _expect_member("preset", self.preset, PRESETS)
+        _expect_member("engine", self.engine, ENGINES)
         if self.texture_format is not None:
             _expect_member("texture format", self.texture_format, TEXTURE_FORMATS)
         _expect_within("texture quality", self.texture_quality, 1, 100)
@@ -64,6 +68,8 @@ class EncodeConfig:
         _expect_within("threads", self.threads, 0, None)
         if not re.fullmatch(r"auto|cpu|cuda(:\d+)?", self.device):
             raise NispError(f"device: expected auto, cpu, cuda or cuda:N, found {self.device!r}")
+        if self.engine == "native" and (self.preset == "paper" or self.device.startswith("cuda")):
+            raise NispError("engine native, preset paper, device cuda: expected one of them")
         targets = [each for each in (self.target_size, self.target_error) if each is not None]
         if len(targets) > 1 or (targets and self.preset == "paper"):
             raise NispError("target size, target error, preset paper: expected one of them")

@@ -19,10 +19,11 @@ from nispcodec.encode.targets import (
 )
 from nispcodec.geometry.analysis import Analysis
 from nispcodec.geometry.solid import area
+from nispcodec.train.backend.protocol import Engine
 from nispcodec.train.config import TrainConfig
 from nispcodec.train.task import Task
 from nispcodec.train.tasks import AssetProblem, paper_tasks
-from nispcodec.train.workers import fit_networks, resolve_device
+from nispcodec.train.workers import fit_networks
 
 
 def fit(
@@ -30,6 +31,7 @@ def fit(
     sets: TrainingSets,
     config: EncodeConfig,
     training: TrainConfig,
+    engine: Engine,
     document: Callable[[Mapping[str, Network]], Document],
     progress: Listener,
 ) -> Mapping[str, Network]:
@@ -37,10 +39,10 @@ def fit(
 
     Raises FitError when a network does not converge.
     """
-    device, threads = resolve_device(config.device), config.threads or os.cpu_count() or 1
+    threads = config.threads or os.cpu_count() or 1
 
     def run(tasks: list[Task], listen: Listener) -> dict[str, Network]:
-        return fit_networks(tasks, config.seed, device, threads, listen)
+        return fit_networks(tasks, config.seed, engine, threads, listen)
 
     problem = asset_problem(analysis, sets, training)
     if config.preset == "paper":

@@ -19,6 +19,7 @@ from nispcodec.encode.single_precision import short_frame, short_uv_map
 from nispcodec.encode.stages import with_overall
 from nispcodec.geometry.analysis import Analysis, analyze
 from nispcodec.model import NispModel
+from nispcodec.train.backend.choice import choose_engine
 
 
 def encode(
@@ -29,20 +30,19 @@ def encode(
 ) -> NispModel:
     """Fit networks to an asset. Ctrl-C and errors leave nothing behind.
 
-    Each network has a process of its own. Outside of Linux, and with CUDA, these start afresh: a
-    script then wants `if __name__ == "__main__":` around its calls.
-
     Raises MeshError when nothing of the mesh can be held by a signed distance, FitError when a
     network does not converge.
     """
     config, tuning = config or EncodeConfig(), tuning or Tuning()
     progress = with_overall(progress, config, tuning.training)
+    published = config.preset == "paper"
+    engine = choose_engine(config.engine, config.device, published, progress)
     materials, textures = appearance(mesh, config, progress)
     progress(Progress(stage="charts and hidden walls"))
     analysis = analyze(mesh, config.seed, tuning.geometry_of(config.preset))
     progress(Progress(stage="samples"))
     sampler = Sampler(analysis, config.seed, tuning.sampling)
-    sets = (paper_training_sets if config.preset == "paper" else training_sets)(sampler)
+    sets = (paper_training_sets if published else training_sets)(sampler)
 
     def document(networks: Mapping[str, Network]) -> Document:
         return Document(
@@ -57,8 +57,8 @@ def encode(
         )
 
     progress(Progress(stage="fit"))
-    done = document(fit(analysis, sets, config, tuning.training, document, progress))
-    return NispModel(replace(done, info=measured(done, analysis, sets, config)))
+    done = document(fit(analysis, sets, config, tuning.training, engine, document, progress))
+    return NispModel(replace(done, info=measured(done, analysis, sets, config, engine.name)))
 
 
 def _half_thickness(analysis: Analysis, tuning: Tuning) -> float:

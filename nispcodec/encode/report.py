@@ -12,7 +12,7 @@ from nispcodec.model import NispModel
 
 
 def measured(
-    document: Document, analysis: Analysis, sets: TrainingSets, config: EncodeConfig
+    document: Document, analysis: Analysis, sets: TrainingSets, config: EncodeConfig, engine: str
 ) -> dict[str, str | int | float | bool]:
     """By the decoder's own evaluation: mean distance, chart accuracy, UV errors; shares of area.
 
@@ -24,6 +24,7 @@ def measured(
     found: dict[str, str | int | float | bool] = {
         "preset": config.preset,
         "seed": config.seed,
+        "engine": engine,
         "hidden_share": _short(analysis.solid.hidden_share),
         "open_surface_share": _short(analysis.solid.open_surface_share),
         "distance_error": _short(distance.mean()),

@@ -18,6 +18,10 @@ class LossConfig:
                       the distance, above, near points are pushed away
     sign_softness     how sure of its sign a field should be: about this far from zero
     uv_error_limit    a UV that is further off than this is wrong, however far
+    sdf_good          mean distance ...
+    chart_good        ... share of wrong charts ...
+    uv_good           ... and mean distance in UV that are fine for use: a fit that stays below a
+                      few times this has not diverged, however good it was for a moment
     sdf_rounding      the kink of an absolute error of the SDF is taken as if it were as round as
                       this, when weights are rounded ...
     uv_rounding       ... and that of UVs as this
@@ -32,6 +36,9 @@ class LossConfig:
     sign_weight: float = 1.8
     sign_softness: float = 2e-3
     uv_error_limit: float = 0.01
+    sdf_good: float = 5e-3
+    chart_good: float = 0.02
+    uv_good: float = 2e-3
     sdf_rounding: float = 5e-5
     uv_rounding: float = 1e-4
     sure_lead: float = 10.0
@@ -87,9 +94,11 @@ class LoopConfig:
     checks          how often the held-out error is measured
     chunk           steps between two looks at progress and at other tasks
     loss_memory     of the loss that is shown
-    diverged        times the best error from which on a fit has diverged ...
+    diverged        times the best error, or a good one if that is more, from which on a fit has
+                    diverged ...
     settled         ... once this share of the steps is done
     retries         at half the rate, from the best weights
+    useless         times a constant's error from which on a network is not worth writing
     """
 
     warm_up: float = 0.15
@@ -102,6 +111,7 @@ class LoopConfig:
     diverged: float = 4.0
     settled: float = 0.25
     retries: int = 4
+    useless: float = 4.0
 
 
 @dataclass(frozen=True)
@@ -110,12 +120,10 @@ class HardExampleConfig:
 
     error_radius  the nearest sample on the right side is sought no further away than this
     memory        share of a sample's weight that is left at the next mining
-    batch         samples that are evaluated at a time
     """
 
     error_radius: float = 0.075
     memory: float = 0.7
-    batch: int = 20_000
 
 
 @dataclass(frozen=True)
@@ -294,6 +302,7 @@ class TrainConfig:
     """All of them.
 
     batch        samples a step: with as long a momentum as Muon's, more and smaller steps do better
+    batch_of_outputs   points that are evaluated at a time
     fine_rate    of the SDF of assets of fine detail
     fine_time    share of the seconds of such assets: they take longer to read and to sample
     embedding    numbers a chart that the UV network sees
@@ -327,6 +336,7 @@ class TrainConfig:
         }
     )
     batch: int = 1024
+    batch_of_outputs: int = 20_000
     fine_rate: float = 5e-4
     fine_time: float = 0.8
     embedding: int = 4

@@ -4,33 +4,31 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Iterator
-from contextlib import AbstractContextManager
 from dataclasses import replace
+from itertools import pairwise
 
-import torch
-from torch import Tensor
+import numpy as np
 
+from nispcodec.core.arrays import Float32Array, Float64Array
 from nispcodec.core.errors import FitError
 from nispcodec.core.network import MAX_INIT_SEED, Network
 from nispcodec.core.progress import Listener, Progress
-from nispcodec.dataset.hard_examples import error_radii
-from nispcodec.train.backend.torch.module import Module
-from nispcodec.train.backend.torch.optimizer import optimizer
-from nispcodec.train.batch import Batch
+from nispcodec.train.backend.protocol import Engine
+from nispcodec.train.batches import Batches
 from nispcodec.train.config import LoopConfig
+from nispcodec.train.cores import Core
+from nispcodec.train.initialization import initial_weights, place_chart_affine
+from nispcodec.train.layout import WeightLayout
 from nispcodec.train.prune import Mask
-from nispcodec.train.quantize import round_weights
+from nispcodec.train.quantize import Unrounded, round_weights
 from nispcodec.train.task import Quantization, Schedule, Task
-
-TINY = 1e-12
 
 
 def train(
     task: Task,
     seed: int,
-    device: str,
-    core: AbstractContextManager[object],
+    engine: Engine,
+    core: Core,
     listen: Listener,
     mask: Mask | None = None,
 ) -> Network:
@@ -40,178 +38,160 @@ def train(
     After hard examples were mined, every other sample of a batch is one of these
     (`nispcodec.dataset.hard_examples`).
 
-    A run whose held-out error explodes goes on from its best weights at half the rate. At
-    the end the weights are rounded (`nispcodec.train.quantize`), if the task says how.
-    Raises FitError when lower rates do not help.
+    A run whose held-out error explodes goes on from its best weights at half the rate; where lower
+    rates do not help, the best network so far is what there is, and a note says so. At the end the
+    weights are rounded (`nispcodec.train.quantize`), if the task says how.
+    Raises FitError for a network that is far worse than a constant.
     """
-    run = _Run(task, seed, device, listen)
-    if mask is not None:
-        run.module.prune(mask)
-    return run.fit(core)
+    return _Run(task, seed, engine, core, listen, mask).fit()
 
 
 class _Run:
-    def __init__(self, task: Task, seed: int, device: str, listen: Listener) -> None:
-        self.task = task
-        self.listen = listen
-        self.generator = torch.Generator().manual_seed(seed)
-        spec = replace(task.spec, init_seed=seed % (MAX_INIT_SEED + 1))
-        self.config = task.config
-        self.module = Module(spec, device, task.schedule.w0_scale)
-        self.held_out = Batch.of(task.held_out, device)
-        self.samples = Batch.of(task.samples, device)
-        if task.spec.conditioning == "chart_affine":
-            self.module.place_chart_affine(
-                self.samples.points, self.samples.chart, self.samples.uv, self.config.affine_ridge
-            )
-        self.hardness = torch.zeros(len(self.samples))
-        self.batches = self._batches()
-        self.minings = _minings(task.schedule)
-        self.rate = task.schedule.rate
-        self.retries = 0
-        self.optimizer_step = optimizer(self.module, task.schedule, self.config)
-        self.ema_weight = _ema_weight(task.schedule, self.config.loop)
-        self.mean = self._weights()
-        self.best_error = math.inf
-        self.best = self._weights()
-        self.loss = math.nan
-
-    def fit(self, core: AbstractContextManager[object]) -> Network:
-        steps = self.task.schedule.steps
-        every, chunk = max(1, steps // self.config.loop.checks), self.config.loop.chunk
-        started = time.monotonic()
-        for step in range(0, steps, chunk):
-            with core:
-                for inner in range(step, min(step + chunk, steps)):
-                    self._step(inner)
-                done = min(step + chunk, steps)
-                note = self._check(done) if done // every > step // every or done == steps else ""
-            left = (time.monotonic() - started) / done * (steps - done)
-            self.listen(
-                Progress(self.task.name, "fit", done, steps, self.loss, self.error, left, note)
-            )
-        self._set(self.best)
-        if self.task.quantization is not None:
-            with core:
-                self._quantize(self.task.quantization)
-        return self.module.network()
-
     error = math.nan
+    loss = math.nan
+    best_error = math.inf
+    retries = 0
 
-    def _step(self, step: int) -> None:
-        schedule = self.task.schedule
-        if step in self.minings:
-            self._mine_hard_examples(floaters=step > self.minings[0])
-        loss = self.task.objective.loss(self.module, next(self.batches))
-        self.module.weights.grad = None
-        loss.backward()  # type: ignore[no-untyped-call]
-        self._remember(float(loss.detach()))
-        self._clip()
-        self.optimizer_step(self.rate * _rate_shape(schedule, step, self.config.loop))
-        self.module.apply_mask()
-        self.mean.lerp_(self.module.weights.detach(), self.ema_weight)
+    def __init__(
+        self,
+        task: Task,
+        seed: int,
+        engine: Engine,
+        core: Core,
+        listen: Listener,
+        mask: Mask | None,
+    ) -> None:
+        self.task, self.config = task, task.config
+        self.core, self.listen = core, listen
+        self.random = np.random.default_rng(seed)
+        self.layout = WeightLayout(replace(task.spec, init_seed=seed % (MAX_INIT_SEED + 1)))
+        self.first = initial_weights(self.layout.spec, task.schedule.w0_scale)
+        self.kept = self.layout.kept(mask)
+        self.trainer = engine.trainer(task, self._start(), self.kept)
+        self.best = self.trainer.weights
+        self.error_radii = engine.error_radii(task)
+        self.batches = Batches(len(task.samples), task.schedule.batch, self.random)
+        self.hardness = np.zeros(len(task.samples), dtype=np.float32)
+        self.rates = _rates(task.schedule, self.config.loop)
 
-    def _quantize(self, quantization: Quantization) -> None:
-        """Round the best weights, again with other samples where that costs much."""
-        steps, before, config = self.task.schedule.steps, self.best_error, self.config.quantize
-        told = Progress(self.task.name, "quantize", steps, steps, self.loss, before, 0.0)
-        tries: list[tuple[float, Tensor, Tensor | None]] = []
-        rise = config.slight if len(self.best) < config.large else config.notable
-        absolute, objective = self._absolute(quantization), self.task.objective
-        while len(tries) < config.tries and all(error > before * rise for error, *_ in tries):
-            self.listen(told)
-            self._set(self.best)
-            round_weights(self.module, self.samples, absolute, objective, self.generator, config)
-            tries.append((self._error(), self._weights(), self.module.steps))
-        after, self.best, self.module.steps = min(tries, key=lambda each: each[0])
-        self._set(self.best)
-        note = f"held-out error {before:.3g} before, {after:.3g} after"
-        self.listen(replace(told, error=after, note=note))
+    def fit(self) -> Network:
+        started, minings = time.monotonic(), _minings(self.task.schedule)
+        for start, stop in _spans(self.task.schedule, minings, self.config.loop):
+            with self.core() as threads:
+                if start in minings:
+                    self._mine_hard_examples(floaters=start > minings[0])
+                self._advance(start, stop, threads)
+                note = self._check(stop) if self._is_check(start, stop) else ""
+            left = (time.monotonic() - started) / stop * (self.task.schedule.steps - stop)
+            self._tell("fit", stop, self.error, left, note)
+            if self.retries > self.config.loop.retries:
+                break
+        self._expect_useful()
+        with self.core():
+            return self._network()
 
-    @torch.no_grad()
-    def _absolute(self, quantization: Quantization) -> Quantization:
-        """With a lambda that is a rise of the loss, and no share of what the fit is left with."""
-        if not self.task.objective.own_curvature:
-            return quantization
-        left = float(self.task.objective.loss(self.module, self.held_out))
-        return replace(quantization, lambda_=left * quantization.lambda_)
+    def _start(self) -> Float32Array:
+        weights = self.first.copy()
+        if self.layout.spec.conditioning == "chart_affine":
+            place_chart_affine(weights, self.layout, self.task.samples, self.config.affine_ridge)
+        return weights
 
-    @torch.no_grad()
-    def _mine_hard_examples(self, floaters: bool) -> None:
-        """From now on take samples on the wrong side more often, most those that cost most."""
-        samples, config = self.samples, self.config.hard_examples
-        parts = torch.split(samples.points, config.batch)
-        field = torch.cat([self.module(part)[:, 0] for part in parts])
-        points, sdf, found = (part.cpu().numpy() for part in (samples.points, samples.sdf, field))
-        radii = torch.from_numpy(error_radii(points, sdf, found, config.error_radius, floaters))
-        self.hardness = torch.maximum(config.memory * self.hardness, radii)
-        self.batches = self._batches()
+    def _advance(self, start: int, stop: int, threads: int) -> None:
+        self.trainer.threads = threads
+        rows = self.batches.take(stop - start)
+        for loss in self.trainer.steps(rows, self.rates[start:stop]).tolist():
+            memory = self.config.loop.loss_memory if math.isfinite(self.loss) else 0.0
+            self.loss = memory * self.loss + (1 - memory) * loss if memory else loss
 
-    def _batches(self) -> Iterator[Batch]:
-        """Rounds of all samples in random order; a batch never straddles two rounds.
-
-        Where there are hard examples, every other sample is one of these, by its hardness.
-        """
-        count, generator = len(self.samples), self.generator
-        size = min(self.task.schedule.batch, count)
-        hard = self.hardness.nonzero()[:, 0]
-        while True:
-            order = torch.randperm(count, generator=generator)
-            if len(hard):
-                weight = self.hardness[hard]
-                again = torch.multinomial(weight, count, True, generator=generator)
-                order = torch.stack([order, hard[again]], dim=1).flatten()
-            yield from self.samples.chosen(order.to(self.samples.points.device)).parts(size)
-
-    def _clip(self) -> None:
-        gradient = self.module.weights.grad
-        assert gradient is not None
-        gradient.mul_((self.config.loop.clip / (gradient.norm() + TINY)).clamp_(max=1.0))
-
-    def _remember(self, loss: float) -> None:
-        memory = self.config.loop.loss_memory if math.isfinite(self.loss) else 0.0
-        self.loss = memory * self.loss + (1 - memory) * loss if memory else loss
+    def _is_check(self, start: int, stop: int) -> bool:
+        steps = self.task.schedule.steps
+        every = max(1, steps // self.config.loop.checks)
+        return stop // every > start // every or stop == steps
 
     def _check(self, done: int) -> str:
         """Measure the held-out error of the mean; keep the best, or go back to it."""
-        now = self._weights()
-        self._set(self.mean)
-        self.error = self._error()
-        self._set(now)
+        mean, config, objective = self.trainer.mean, self.config.loop, self.task.objective
+        self.error = self._error(mean)
         if self.error < self.best_error:
-            self.best_error, self.best = self.error, self.mean.clone()
+            self.best_error, self.best = self.error, mean
             return ""
-        config = self.config.loop
         settled = done >= config.settled * self.task.schedule.steps
-        worse = self.error > config.diverged * self.best_error
+        worse = self.error > config.diverged * max(self.best_error, objective.good)
         if math.isfinite(self.error) and not (settled and worse):
             return ""
         return self._retry(done)
 
     def _retry(self, done: int) -> str:
         self.retries += 1
-        retries = self.config.loop.retries
-        if self.retries > retries:
-            raise FitError(
-                f"{self.task.name} network: held-out error {self.error:g} after {retries} retries "
-                f"at lower rates, best {self.best_error:g}: the fit does not converge"
+        if self.retries > self.config.loop.retries:
+            return (
+                f"warning: held-out error {self.error:g} after {self.config.loop.retries} retries "
+                f"at lower rates: the best network so far is kept, held-out error "
+                f"{self.best_error:g}"
             )
-        self._set(self.best)
-        self.mean = self.best.clone()
-        self.rate /= 2
-        self.optimizer_step = optimizer(self.module, self.task.schedule, self.config)
-        return f"diverged at step {done}: going on from the best weights at rate {self.rate:g}"
+        self.trainer.restart(self.best)
+        self.rates = self.rates / 2
+        rate = self.task.schedule.rate / 2**self.retries
+        return f"diverged at step {done}: going on from the best weights at rate {rate:g}"
 
-    @torch.no_grad()
-    def _error(self) -> float:
-        return float(self.task.objective.error(self.module, self.held_out))
+    def _expect_useful(self) -> None:
+        objective, held_out = self.task.objective, self.task.held_out
+        constant = max(objective.ignorance(held_out), objective.good)
+        if not self.best_error <= self.config.loop.useless * constant:
+            raise FitError(
+                f"{self.task.name} network: expected a held-out error below that of a constant, "
+                f"{constant:.3g}, found {self.best_error:.3g}: the fit does not converge"
+            )
 
-    def _weights(self) -> Tensor:
-        return self.module.weights.detach().clone()
+    def _mine_hard_examples(self, floaters: bool) -> None:
+        """From now on take samples on the wrong side more often, most those that cost most."""
+        samples, config = self.task.samples, self.config.hard_examples
+        field = self.trainer.outputs(self.trainer.weights, samples.points, samples.chart)[:, 0]
+        radii = self.error_radii(field, config.error_radius, floaters)
+        self.hardness = np.maximum(np.float32(config.memory) * self.hardness, radii)
+        self.batches.prefer(self.hardness)
 
-    @torch.no_grad()
-    def _set(self, weights: Tensor) -> None:
-        self.module.weights.copy_(weights)
+    def _network(self) -> Network:
+        if self.task.quantization is None:
+            return self.layout.network(self.best)
+        weights, steps = self._rounded(self.task.quantization)
+        return self.layout.network(weights, steps)
+
+    def _rounded(self, quantization: Quantization) -> tuple[Float32Array, Float64Array]:
+        """The best weights rounded, again with other samples where that costs much."""
+        before, config = self.best_error, self.config.quantize
+        unrounded = Unrounded(
+            self.task, self.layout, self.trainer, self.best, self.first, self.kept
+        )
+        rise = config.slight if len(self.best) < config.large else config.notable
+        absolute = self._absolute(quantization)
+        tries: list[tuple[float, Float32Array, Float64Array]] = []
+        while len(tries) < config.tries and all(error > before * rise for error, *_ in tries):
+            self._tell("quantize", self.task.schedule.steps, before, 0.0, "")
+            weights, steps = round_weights(unrounded, absolute, self.random)
+            tries.append((self._error(weights), weights, steps))
+        after, weights, steps = min(tries, key=lambda each: each[0])
+        note = f"held-out error {before:.3g} before, {after:.3g} after"
+        self._tell("quantize", self.task.schedule.steps, after, 0.0, note)
+        return weights, steps
+
+    def _absolute(self, quantization: Quantization) -> Quantization:
+        """With a lambda that is a rise of the loss, and no share of what the fit is left with."""
+        if not self.task.objective.own_curvature:
+            return quantization
+        left = self.task.objective.loss(self._outputs(self.best), self.task.held_out)
+        return replace(quantization, lambda_=left * quantization.lambda_)
+
+    def _error(self, weights: Float32Array) -> float:
+        return self.task.objective.error(self._outputs(weights), self.task.held_out)
+
+    def _outputs(self, weights: Float32Array) -> Float32Array:
+        held_out = self.task.held_out
+        return self.trainer.outputs(weights, held_out.points, held_out.chart)
+
+    def _tell(self, stage: str, step: int, error: float, left: float, note: str) -> None:
+        steps = self.task.schedule.steps
+        self.listen(Progress(self.task.name, stage, step, steps, self.loss, error, left, note))
 
 
 def _minings(schedule: Schedule) -> range:
@@ -220,17 +200,18 @@ def _minings(schedule: Schedule) -> range:
     return range(every, every * schedule.minings + 1, every) if every else range(0)
 
 
-def _ema_weight(schedule: Schedule, config: LoopConfig) -> float:
-    """The share of the newest weights in the running mean."""
-    if schedule.optimizer == "adam":
-        return 1.0
-    return 1 / max(1.0, config.ema_share * schedule.steps)
+def _spans(schedule: Schedule, minings: range, config: LoopConfig) -> list[tuple[int, int]]:
+    """The runs of steps between two looks at progress; a mining begins one."""
+    bounds = {*range(0, schedule.steps, config.chunk), *minings, schedule.steps}
+    return list(pairwise(sorted(bounds)))
 
 
-def _rate_shape(schedule: Schedule, step: int, config: LoopConfig) -> float:
-    """The rate at a step, relative to the schedule's."""
+def _rates(schedule: Schedule, config: LoopConfig) -> Float32Array:
+    """The rate of every step."""
+    steps = np.arange(schedule.steps)
     if schedule.optimizer == "adam":
-        return 1.0
-    cosine = 0.5 * (1 + math.cos(math.pi * step / schedule.steps))
-    warmed = min(1.0, (step + 1) / (config.warm_up * schedule.steps))
-    return warmed * (config.final_rate + (1 - config.final_rate) * cosine)
+        return np.full(schedule.steps, schedule.rate, dtype=np.float32)
+    cosine = 0.5 * (1 + np.cos(np.pi * steps / schedule.steps))
+    warmed = np.minimum(1.0, (steps + 1) / (config.warm_up * schedule.steps))
+    shape = warmed * (config.final_rate + (1 - config.final_rate) * cosine)
+    return (schedule.rate * shape).astype(np.float32)

@@ -7,27 +7,26 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import AbstractContextManager
 from dataclasses import replace
 
 from nispcodec.core.errors import FitError
 from nispcodec.core.network import Network
 from nispcodec.core.progress import Listener, Progress
+from nispcodec.train.backend.protocol import Engine
+from nispcodec.train.cores import Core
 from nispcodec.train.loop import train
 from nispcodec.train.prune import STRATEGIES, Mask, everything
 from nispcodec.train.task import Task
 
 
-def fit(
-    task: Task, seed: int, device: str, core: AbstractContextManager[object], listen: Listener
-) -> Network:
+def fit(task: Task, seed: int, engine: Engine, core: Core, listen: Listener) -> Network:
     """`train`, in as many rounds as the task's pruning has, and one more before any is pruned.
 
     Only the last round rounds the weights: how large they are tells more before.
     Raises FitError when nothing is left of a matrix, which would leave a constant.
     """
     if task.pruning is None:
-        return train(task, seed, device, core, listen)
+        return train(task, seed, engine, core, listen)
     rates = task.pruning.rates
     heard = _rounds(listen, len(rates) + 1)
 
@@ -39,7 +38,7 @@ def fit(
                     f"than {rates[-1]:g}, or another strategy than smallest_global"
                 )
         this = task if rate == rates[-1] else replace(task, quantization=None)
-        return train(this, seed, device, core, next(heard), mask)
+        return train(this, seed, engine, core, next(heard), mask)
 
     *_, network = lottery_ticket(task, task.pruning.strategy, rates, trained)
     return network

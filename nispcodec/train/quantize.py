@@ -9,53 +9,73 @@ the second derivatives are known whole, or in large blocks.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 
 import numpy as np
-import torch
-from torch import Tensor
-from torch.func import grad, vmap
-from torch.nn import functional
+from scipy.linalg import cho_solve, lapack
+from scipy.linalg.blas import ssyrk
 
-from nispcodec.core.arrays import Float64Array
+from nispcodec.core.arrays import Float32Array, Float64Array, IndexArray
 from nispcodec.core.errors import FitError
 from nispcodec.core.network import MAX_ROW_SHIFT
-from nispcodec.train.backend.torch.module import Module, snapped
-from nispcodec.train.batch import Batch
+from nispcodec.core.sample_set import SampleSet
+from nispcodec.train.backend.protocol import Trainer
 from nispcodec.train.config import QuantizeConfig
-from nispcodec.train.objectives import Objective
-from nispcodec.train.task import Quantization
+from nispcodec.train.layout import WeightLayout, four_bits
+from nispcodec.train.task import Quantization, Task
 
 GAUSSIAN_BITS = 0.5 * math.log2(2 * math.pi * math.e)
 TINY = 1e-30
 
 
+@dataclass(frozen=True)
+class Unrounded:
+    """A fitted network, and what evaluates it.
+
+    weights  (weights,) the best of the fit
+    first    (weights,) those that it started from, which the decoder knows
+    kept     (weights,) 0 for what is pruned; None: nothing is
+    """
+
+    task: Task
+    layout: WeightLayout
+    trainer: Trainer
+    weights: Float32Array
+    first: Float32Array
+    kept: Float32Array | None = None
+
+    @property
+    def places(self) -> IndexArray:
+        """Where in the vector the weights are that are not pruned."""
+        return np.arange(len(self.weights)) if self.kept is None else np.flatnonzero(self.kept)
+
+
 def round_weights(
-    module: Module,
-    samples: Batch,
-    quantization: Quantization,
-    objective: Objective,
-    generator: torch.Generator,
-    config: QuantizeConfig = QuantizeConfig(),
-) -> None:
-    """Put the weights on a grid, with a step for each row; what is pruned costs nothing."""
-    wanted = config.derivatives // len(module.places)
+    unrounded: Unrounded, quantization: Quantization, random: np.random.Generator
+) -> tuple[Float32Array, Float64Array]:
+    """Weights on a grid with a step for each row (weights,), and the steps of tensors (tensors,).
+
+    What is pruned stays 0 and costs nothing. Raises FitError for weights that are not finite.
+    """
+    config, objective = unrounded.task.config.quantize, unrounded.task.objective
+    wanted = config.derivatives // len(unrounded.places)
     count = min(max(wanted, config.least_samples), config.most_samples)
-    rows = torch.randperm(len(samples), generator=generator)[:count]
-    batch = samples.chosen(rows.to(samples.points.device))
-    rise = _Rise(module, batch, objective, config)
+    samples = unrounded.task.samples
+    rise = _Rise(unrounded, samples[random.permutation(len(samples))[:count]], config)
     # The last of a block is rounded first: so it goes from the first layer to the last, in which
     # the outputs are linear and what went wrong before is made up for best.
-    order = module.places.flip(0)
-    blocks = torch.split(order, len(order) if len(order) <= config.whole else config.block)
-    roots = rise.roots(blocks, generator)
+    order = unrounded.places[::-1]
+    blocks = _blocks(order, len(order) if len(order) <= config.whole else config.block)
+    roots = rise.roots(blocks, random)
     most = MAX_ROW_SHIFT if objective.own_curvature else 0
-    grid = _grid(module, order, roots, quantization, most, config)
+    grid, steps = _grid(unrounded, order, roots, quantization, most)
     for places, root in zip(reversed(blocks), reversed(roots), strict=True):
-        values, steps = rise.least(places, root), grid[places]
-        together = torch.from_numpy(nearest((values / steps).numpy(), (root * steps).numpy()))
+        values, sizes = rise.least(places, root), grid[places]
+        together = nearest(values / sizes, root * sizes)
         # Steps so coarse that the rise is no square any more: then each weight by itself.
-        rise.best(places, [together * steps, (values / steps).round() * steps])
+        rise.best(places, [together * sizes, np.rint(values / sizes) * sizes])
+    return rise.weights, steps
 
 
 def nearest(values: Float64Array, root: Float64Array) -> Float64Array:
@@ -68,125 +88,123 @@ def nearest(values: Float64Array, root: Float64Array) -> Float64Array:
     return found
 
 
+def _blocks(order: IndexArray, size: int) -> list[IndexArray]:
+    return [order[start : start + size] for start in range(0, len(order), size)]
+
+
 class _Rise:
     """How much the loss rises: half the square of how far the outputs are from where they were."""
 
-    def __init__(
-        self, module: Module, batch: Batch, objective: Objective, config: QuantizeConfig
-    ) -> None:
-        self.module, self.batch, self.damping = module, batch, objective.damping
-        self.config = config
-        with torch.no_grad():
-            self.first = module(batch.points, batch.chart)
-            self.factors = objective.factors(self.first, batch)
+    def __init__(self, unrounded: Unrounded, samples: SampleSet, config: QuantizeConfig) -> None:
+        self.weights = unrounded.weights.copy()
+        self._trainer, self._samples, self._config = unrounded.trainer, samples, config
+        self._damping = unrounded.task.objective.damping
+        self._first = self._outputs()
+        self._factors = unrounded.task.objective.factors(self._first, samples).astype(np.float32)
 
-    def slope(self) -> Tensor:
-        """Its derivatives by the weights, where they are now."""
-        (slope,) = torch.autograd.grad(self(), self.module.weights)
-        return slope.cpu().double()
-
-    def least(self, places: Tensor, root: Tensor) -> Tensor:
+    def least(self, places: IndexArray, root: Float64Array) -> Float64Array:
         """Values in these places that make it least, as far as Newton's step leads there."""
-        values = self.module.weights.detach().cpu().double()[places]
-        slope = self.slope()[places]
-        step = torch.cholesky_solve(slope[:, None], root, upper=True)[:, 0]
-        return self.best(places, [values - share * step for share in self.config.newton_shares])
+        values = self.weights[places].astype(np.float64)
+        step = cho_solve((root, False), self._slope()[places].astype(np.float64))
+        return self.best(places, [values - share * step for share in self._config.newton_shares])
 
-    @torch.no_grad()
-    def best(self, places: Tensor, candidates: Sequence[Tensor]) -> Tensor:
+    def best(self, places: IndexArray, candidates: Sequence[Float64Array]) -> Float64Array:
         """The candidate for these places with the least rise, which is now there."""
         rises = []
         for values in candidates:
-            self._move(places, values)
-            rises.append(float(self()))
+            self.weights[places] = values
+            rises.append(float(np.square(self._off()).sum()))
         chosen = candidates[int(np.argmin(rises))]
-        self._move(places, chosen)
+        self.weights[places] = chosen
         return chosen
 
-    def __call__(self) -> Tensor:
-        """It, as the weights are now."""
-        batch = self.batch
-        off = self.module(batch.points, batch.chart) - self.first
-        return (off[:, None] @ self.factors).square().sum() / (2 * len(batch))
-
-    def _move(self, places: Tensor, values: Tensor) -> None:
-        weights = self.module.weights
-        weights.index_copy_(0, places.to(weights.device), values.to(weights))
-
-    def roots(self, blocks: Sequence[Tensor], generator: torch.Generator) -> list[Tensor]:
+    def roots(
+        self, blocks: Sequence[IndexArray], random: np.random.Generator
+    ) -> list[Float64Array]:
         """Upper Cholesky factors of its second derivatives, block by block."""
-        weights, batch = self.module.weights.detach(), self.batch
-        sums = [torch.zeros(len(block), len(block), device=weights.device) for block in blocks]
-        size = max(1, min(len(batch), self.config.entries // len(weights)))
         # One direction for each point in place of all, right in the mean.
-        signs = torch.randint(2, self.factors.shape[::2], generator=generator) * 2.0 - 1
-        directions = (self.factors @ signs.to(weights)[:, :, None])[:, :, 0]
-        for points in torch.split(torch.arange(len(batch), device=weights.device), size):
-            part, along = batch.chosen(points), directions[points]
-            slopes = _slopes(self.module, weights, part, along)
+        signs = random.integers(0, 2, self._factors.shape[::2]) * 2.0 - 1
+        directions = _along(self._factors, signs.astype(np.float32))
+        sums = [np.zeros((len(block),) * 2, np.float32, order="F") for block in blocks]
+        for slopes in self._slopes(directions):
             for block, total in zip(blocks, sums, strict=True):
-                rows = slopes.index_select(1, block.to(slopes.device))
-                total.addmm_(rows.T, rows, alpha=1 / len(batch))
-        return [_root(total.cpu().double(), self.damping) for total in sums]
+                # Rows of the columns that a block has, as the Fortran routine wants them.
+                ssyrk(1.0, slopes[:, block].T, 1.0, total, overwrite_c=True)
+        return [_root(total / len(self._samples), self._damping) for total in sums]
+
+    def _slope(self) -> Float64Array:
+        """Its derivatives by the weights (weights,), where they are now."""
+        pulls = _along(self._factors, self._off())
+        slopes = (part.sum(axis=0, dtype=np.float64) for part in self._slopes(pulls))
+        return sum(slopes, np.zeros(len(self.weights))) / len(self._samples)
+
+    def _slopes(self, directions: Float32Array) -> Iterator[Float32Array]:
+        """Derivatives (some points, weights) of the outputs along directions (n, outputs)."""
+        size = max(1, self._config.entries // len(self.weights))
+        for start in range(0, len(self._samples), size):
+            part, along = self._samples[start : start + size], directions[start : start + size]
+            yield self._trainer.slopes(self.weights, part.points, part.chart, along)
+
+    def _off(self) -> Float32Array:
+        """How far the outputs are from where they were, by the factors' columns (n, r)."""
+        return ((self._outputs() - self._first)[:, None] @ self._factors)[:, 0]
+
+    def _outputs(self) -> Float32Array:
+        return self._trainer.outputs(self.weights, self._samples.points, self._samples.chart)
 
 
-def _slopes(module: Module, weights: Tensor, batch: Batch, directions: Tensor) -> Tensor:
-    """Derivatives (n, weights) of each point's outputs along its direction (n, outputs)."""
-
-    def along(used: Tensor, point: Tensor, chart: Tensor, direction: Tensor) -> Tensor:
-        return module.outputs(used, point[None], chart[None])[0] @ direction
-
-    every = vmap(grad(along), in_dims=(None, 0, 0, 0))
-    slopes: Tensor = every(weights, batch.points, batch.chart, directions)
-    return slopes
+def _along(factors: Float32Array, amounts: Float32Array) -> Float32Array:
+    """So much (n, r) of each column of the factors (n, k, r): (n, k)."""
+    return np.ascontiguousarray((factors @ amounts[:, :, None])[:, :, 0])
 
 
-def _root(square: Tensor, damping: float) -> Tensor:
-    """Upper Cholesky factor, with ten times the damping until there is one."""
-    mean = float(square.diagonal().mean()) + TINY
+def _root(square: Float32Array, damping: float) -> Float64Array:
+    """Upper Cholesky factor of an upper triangle, with ten times the damping until there is one."""
+    mean = float(np.diag(square).mean()) + TINY
     if not math.isfinite(mean):
         raise FitError("weights cannot be rounded: expected finite derivatives, found NaN")
     while True:
-        damped = square + damping * mean * torch.eye(len(square), dtype=square.dtype)
-        root, failed = torch.linalg.cholesky_ex(damped, upper=True)
+        damped = square.astype(np.float64)
+        damped[np.diag_indices(len(damped))] += damping * mean
+        root, failed = lapack.dpotrf(damped, lower=0, clean=1)
         if not failed:
             return root
         damping *= 10
 
 
 def _grid(
-    module: Module,
-    order: Tensor,
-    roots: Sequence[Tensor],
+    unrounded: Unrounded,
+    order: IndexArray,
+    roots: Sequence[Float64Array],
     quantization: Quantization,
     most: int,
-    config: QuantizeConfig,
-) -> Tensor:
-    """The step of each weight with which rounding costs what it may, in fewest bits.
+) -> tuple[Float64Array, Float64Array]:
+    """The step of each weight (weights,), and of each tensor, with which rounding costs what it may.
 
     An error of variance s^2 / 12 in each weight costs half its stiffness times that; at the optimum
-    a bit less costs the same in every row. A row's step is its tensor's, which goes to the module's
-    `steps`, times a power of two of at most `most`, its row shift: that is what files can say.
-    What stands for a loss says too little of charts that are rare to round them more coarsely.
+    a bit less costs the same in every row. A row's step is its tensor's times a power of two of at
+    most `most`, its row shift: that is what files can say. What stands for a loss says too little
+    of charts that are rare to round them more coarsely.
     """
-    stiffness = torch.cat([root.diagonal().square() for root in roots])
-    rows, count = module.rows[order], int(module.rows.max()) + 1
-    counts = torch.bincount(rows, minlength=count).double()
-    total = torch.bincount(rows, stiffness, minlength=count)
+    layout, config = unrounded.layout, unrounded.task.config.quantize
+    stiffness = np.concatenate([np.diag(root) ** 2 for root in roots])
+    rows, count = layout.rows[order], int(layout.rows.max()) + 1
+    counts = np.bincount(rows, minlength=count).astype(np.float64)
+    total = np.bincount(rows, stiffness, minlength=count)
     allowed = quantization.lambda_ / (2 * math.log(2))
-    steps = (24 * allowed / len(order) * counts / (total + TINY)).sqrt()
-    steps.clamp_(config.finest, config.coarsest)
+    steps = np.sqrt(24 * allowed / len(order) * counts / (total + TINY))
+    steps = steps.clip(config.finest, config.coarsest)
     if quantization.bit_budget:
-        steps *= 2 ** _finer(module, order, steps, quantization.bit_budget, config)
-    steps.clamp_(config.finest, config.coarsest)
+        steps *= 2 ** _finer(unrounded, order, steps, quantization.bit_budget)
+        steps = steps.clip(config.finest, config.coarsest)
     held = []
-    for scale, found in zip(module.scales.values(), module.rows_of_tensors, strict=True):
-        wanted, many = steps[found].numpy(), counts[found].numpy()
-        step, row_shifts = shared_step(wanted, many, scale, most, config.step_resolution)
-        steps[found] = torch.from_numpy(step * 2**row_shifts)
+    for scale, found in zip(layout.scales.values(), layout.rows_of_tensors, strict=True):
+        step, row_shifts = shared_step(
+            steps[found], counts[found], scale, most, config.step_resolution
+        )
+        steps[found] = step * 2**row_shifts
         held.append(step)
-    module.steps = torch.tensor(held, dtype=torch.float64)
-    return steps[module.rows]
+    return steps[layout.rows], np.array(held)
 
 
 def shared_step(
@@ -204,7 +222,9 @@ def shared_step(
     first, last = float(wanted.min()), float(wanted.max())
     exponents = np.arange(first, min(last, first + MAX_ROW_SHIFT) + resolution, resolution)
     best: tuple[float, float, Float64Array] | None = None
-    for step in sorted({snapped(2.0**exponent / scale) * scale for exponent in exponents.tolist()}):
+    for step in sorted(
+        {four_bits(2.0**exponent / scale) * scale for exponent in exponents.tolist()}
+    ):
         for width in range(most.bit_length() + 1 if len(steps) > 1 else 1):
             row_shifts = np.clip(np.rint(np.log2(steps / step)), 0, (1 << width) - 1)
             off = step * 2**row_shifts / steps
@@ -215,25 +235,26 @@ def shared_step(
     return best[1:]
 
 
-def _finer(
-    module: Module, order: Tensor, steps: Tensor, budget: float, config: QuantizeConfig
-) -> float:
+def _finer(unrounded: Unrounded, order: IndexArray, steps: Float64Array, budget: float) -> float:
     """How many octaves coarser (below 0: finer) `steps` of rows make weights fit into a budget.
 
     In bits, of all weights: n symbols of a tensor, of power p less what initial weights predict,
     take n softplus(2 x) / 2 bits, x = log2(sqrt(p)) + `GAUSSIAN_BITS`: a Gaussian's entropy, kept
     above 0.
     """
-    tensors, grid = module.groups[order], steps[module.rows[order]]
-    weights, first = module.weights.detach().cpu()[order].double(), module.first[order].double()
-    share = torch.bincount(tensors, weights * first) / (torch.bincount(tensors, first**2) + TINY)
-    counts = torch.bincount(tensors).double()
-    power = torch.bincount(tensors, ((weights - share[tensors] * first) / grid).square())
+    layout, config = unrounded.layout, unrounded.task.config.quantize
+    tensors, grid = layout.tensors[order], steps[layout.rows[order]]
+    weights, first = (
+        each[order].astype(np.float64) for each in (unrounded.weights, unrounded.first)
+    )
+    share = np.bincount(tensors, weights * first) / (np.bincount(tensors, first**2) + TINY)
+    counts = np.bincount(tensors).astype(np.float64)
+    power = np.bincount(tensors, np.square((weights - share[tensors] * first) / grid))
     budget -= config.header_bits * len(counts)
-    excess = torch.log2((power / counts.clamp(min=1)).clamp(min=TINY)) + 2 * GAUSSIAN_BITS
+    excess = np.log2(np.maximum(power / np.maximum(counts, 1), TINY)) + 2 * GAUSSIAN_BITS
     low, high = -config.budget_range, config.budget_range
     while high - low > config.budget_tolerance:
         middle = (low + high) / 2
-        bits = float(counts @ functional.softplus(excess - 2 * middle)) / 2
+        bits = float(counts @ np.logaddexp(0, excess - 2 * middle)) / 2
         low, high = (middle, high) if bits > budget else (low, middle)
     return high

@@ -65,3 +65,10 @@ class Task:
     quantization: Quantization | None = None
     pruning: Pruning | None = None
     config: TrainConfig = field(default_factory=TrainConfig)
+
+    @property
+    def mean_weight(self) -> float:
+        """The share of the newest weights in the running mean of the weights."""
+        if self.schedule.optimizer == "adam":
+            return 1.0
+        return 1 / max(1.0, self.config.loop.ema_share * self.schedule.steps)

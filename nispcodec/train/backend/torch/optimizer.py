@@ -7,31 +7,46 @@ from collections.abc import Callable
 import torch
 from torch import Tensor
 
-from nispcodec.train.backend.torch.module import Module
+from nispcodec.core.arrays import IndexArray
 from nispcodec.train.backend.torch.muon import Muon
 from nispcodec.train.backend.torch.soap import Soap
-from nispcodec.train.config import TrainConfig
-from nispcodec.train.task import Schedule
+from nispcodec.train.backend.torch.stack import Matrices
+from nispcodec.train.layout import WeightLayout
+from nispcodec.train.task import Task
 
 Step = Callable[[float], None]
 """To be called after `backward`, with the rate."""
 
 
-def optimizer(module: Module, schedule: Schedule, config: TrainConfig) -> Step:
+def optimizer(weights: Tensor, task: Task) -> Step:
     """A new one, which remembers nothing yet."""
-    if schedule.optimizer == "adam":
-        return _adam(module.weights)
-    hidden, others = module.matrices(schedule.last_layer_lr_scale)
-    soap = Soap(module.weights, others, config.soap)
+    if task.schedule.optimizer == "adam":
+        return _adam(weights)
+    hidden, others = _matrices(task)
+    soap = Soap(weights, others, task.config.soap)
     if not hidden:
         return soap.step
-    muon = Muon(module.weights, hidden, schedule.momentum_share, config.muon)
+    muon = Muon(weights, hidden, task.schedule.momentum_share, task.config.muon)
 
     def step(rate: float) -> None:
         soap.step(rate)
         muon.step(rate)
 
     return step
+
+
+def _matrices(task: Task) -> tuple[Matrices, Matrices]:
+    """Those from one hidden layer to the next, then all others, with relative rates."""
+    layout = WeightLayout(task.spec)
+    scales = [layout.scales[f"weight.{i}"] for i in range(len(task.spec.hidden))]
+    rates = [*scales, task.schedule.last_layer_lr_scale]
+    layers = [_with_rate(*each) for each in zip(layout.layers, rates, strict=True)]
+    tables = [] if layout.tables is None else [_with_rate(layout.tables, 1.0)]
+    return layers[1:-1], [layers[0], layers[-1], *tables]
+
+
+def _with_rate(places: IndexArray, rate: float) -> tuple[Tensor, float]:
+    return torch.from_numpy(places), rate
 
 
 def _adam(weights: Tensor) -> Step:

@@ -11,13 +11,42 @@ from dataclasses import dataclass
 import torch
 from torch import Tensor
 
-from nispcodec.train.backend.torch.stack import Matrices, Stack
+from nispcodec.train.backend.torch.stack import Matrices
 from nispcodec.train.config import SoapConfig
+from nispcodec.train.soap_bases import bases
+
+
+class Soap:
+    """Minimizes over `matrices` of a vector of weights. Call `step` after `backward`."""
+
+    def __init__(
+        self, weights: Tensor, matrices: Matrices, config: SoapConfig = SoapConfig()
+    ) -> None:
+        self._weights, self._config = weights, config
+        self._matrices = [(places.to(weights.device), rate) for places, rate in matrices]
+        self._states: list[_State] = []
+        self._steps = 0
+
+    @torch.no_grad()
+    def step(self, scale: float) -> None:
+        """One step of every matrix, by its rate times `scale`; the first call only measures."""
+        assert self._weights.grad is not None
+        gradients = [self._weights.grad[places] for places, _ in self._matrices]
+        if not self._states:
+            self._states = [_State.first(gradient, self._config) for gradient in gradients]
+            return
+        self._steps += 1
+        refreshed = self._steps % self._config.refresh_every == 0
+        every = zip(self._matrices, gradients, self._states, strict=True)
+        for (places, rate), gradient, state in every:
+            self._weights[places] -= rate * scale * state.direction(gradient, self._steps)
+            if refreshed:
+                state.refresh()
 
 
 @dataclass
 class _State:
-    """State of the padded stack: moments and the two sides' covariances and eigenbases."""
+    """Of one matrix: moments, and the two sides' covariances and eigenbases."""
 
     mean: Tensor
     square: Tensor
@@ -25,70 +54,42 @@ class _State:
     right: Tensor
     left_basis: Tensor
     right_basis: Tensor
+    config: SoapConfig
 
+    @staticmethod
+    def first(gradient: Tensor, config: SoapConfig) -> _State:
+        left, right = (torch.from_numpy(side) for side in bases(gradient.cpu().numpy()))
+        return _State(
+            mean=torch.zeros_like(gradient),
+            square=torch.zeros_like(gradient),
+            left=gradient @ gradient.mT,
+            right=gradient.mT @ gradient,
+            left_basis=left.to(gradient.device),
+            right_basis=right.to(gradient.device),
+            config=config,
+        )
 
-class Soap:
-    """Minimizes over `matrices` of a vector of weights. Call `step` after `backward`."""
+    def direction(self, gradient: Tensor, steps: int) -> Tensor:
+        """Adam's step in the rotated basis, rotated back; updates moments and covariances."""
+        beta, epsilon = self.config.beta, self.config.epsilon
+        rotated = self.left_basis.mT @ gradient @ self.right_basis
+        self.mean.lerp_(gradient, 1 - beta)
+        self.square.lerp_(rotated.square_(), 1 - beta)
+        self.left.lerp_(gradient @ gradient.mT, 1 - beta)
+        self.right.lerp_(gradient.mT @ gradient, 1 - beta)
+        correction = 1 - beta**steps
+        mean = self.left_basis.mT @ self.mean @ self.right_basis
+        scaled = (mean / correction) / ((self.square / correction).sqrt_().add_(epsilon))
+        return self.left_basis @ scaled @ self.right_basis.mT
 
-    state: _State | None = None
-
-    def __init__(
-        self, weights: Tensor, matrices: Matrices, config: SoapConfig = SoapConfig()
-    ) -> None:
-        self.stack = Stack(weights, matrices)
-        self.steps, self.config = 0, config
-
-    @torch.no_grad()
-    def step(self, scale: float) -> None:
-        """One step of every matrix, by its rate times `scale`; the first call only measures."""
-        gradient = self.stack.gradient()
-        if self.state is None:
-            self.state = _fresh_state(gradient)
-            return
-        self.steps += 1
-        direction = _direction(gradient, self.state, self.steps, self.config)
-        self.stack.subtract(direction, scale)
-        if self.steps % self.config.refresh_every == 0:
-            _refresh(self.state)
-
-
-def _fresh_state(gradient: Tensor) -> _State:
-    left, right = gradient @ gradient.mT, gradient.mT @ gradient
-    return _State(
-        mean=torch.zeros_like(gradient),
-        square=torch.zeros_like(gradient),
-        left=left,
-        right=right,
-        left_basis=torch.linalg.eigh(left)[1].flip(2),
-        right_basis=torch.linalg.eigh(right)[1].flip(2),
-    )
-
-
-def _direction(gradient: Tensor, state: _State, steps: int, config: SoapConfig) -> Tensor:
-    """Adam's step in the rotated basis, rotated back; updates moments and covariances."""
-    beta, epsilon = config.beta, config.epsilon
-    rotated = state.left_basis.mT @ gradient @ state.right_basis
-    state.mean.lerp_(gradient, 1 - beta)
-    state.square.lerp_(rotated.square_(), 1 - beta)
-    state.left.lerp_(gradient @ gradient.mT, 1 - beta)
-    state.right.lerp_(gradient.mT @ gradient, 1 - beta)
-    correction = 1 - beta**steps
-    mean = state.left_basis.mT @ state.mean @ state.right_basis
-    scaled = (mean / correction) / ((state.square / correction).sqrt_().add_(epsilon))
-    return state.left_basis @ scaled @ state.right_basis.mT
-
-
-def _refresh(state: _State) -> None:
-    """One power iteration towards the eigenbasis; the second moments follow its order."""
-    state.left_basis, rows = _iterate(state.left, state.left_basis)
-    state.right_basis, columns = _iterate(state.right, state.right_basis)
-    order = rows[:, :, None].expand_as(state.square)
-    state.square = state.square.gather(1, order)
-    state.square = state.square.gather(2, columns[:, None, :].expand_as(state.square))
+    def refresh(self) -> None:
+        """One power iteration towards the eigenbasis; the second moments follow its order."""
+        self.left_basis, rows = _iterate(self.left, self.left_basis)
+        self.right_basis, columns = _iterate(self.right, self.right_basis)
+        self.square = self.square[rows][:, columns]
 
 
 def _iterate(covariance: Tensor, basis: Tensor) -> tuple[Tensor, Tensor]:
-    eigenvalues = (basis * (covariance @ basis)).sum(dim=1)
-    order = torch.argsort(eigenvalues, descending=True)
-    sorted_basis = basis.gather(2, order[:, None, :].expand_as(basis))
-    return torch.linalg.qr(covariance @ sorted_basis)[0], order
+    eigenvalues = (basis * (covariance @ basis)).sum(dim=0)
+    order = torch.argsort(eigenvalues, descending=True, stable=True)
+    return torch.linalg.qr(covariance @ basis[:, order])[0], order

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 
 import torch
@@ -30,16 +29,7 @@ class Batch:
             torch.from_numpy(samples.uv).to(device),
         )
 
-    def __len__(self) -> int:
-        return len(self.points)
-
     def chosen(self, rows: Tensor) -> Batch:
         """The points with these numbers; `index_select` is several times as fast as brackets."""
         everything = (self.points, self.sdf, self.chart, self.uv)
         return Batch(*(part.index_select(0, rows) for part in everything))
-
-    def parts(self, size: int) -> Iterator[Batch]:
-        """The batches of `size` points that this one holds; points left over are left out."""
-        for start in range(0, len(self) - size + 1, size):
-            rows = slice(start, start + size)
-            yield Batch(self.points[rows], self.sdf[rows], self.chart[rows], self.uv[rows])
