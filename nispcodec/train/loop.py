@@ -148,7 +148,7 @@ class _Run:
         samples, config = self.task.samples, self.config.hard_examples
         field = self.trainer.outputs(self.trainer.weights, samples.points, samples.chart)[:, 0]
         radii = self.error_radii(field, config.error_radius, floaters)
-        self.hardness = np.maximum(np.float32(config.memory) * self.hardness, radii)
+        self.hardness = np.maximum(self.hardness * np.float32(config.memory), radii)
         self.batches.prefer(self.hardness)
 
     def _network(self) -> Network:

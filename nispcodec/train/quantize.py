@@ -16,7 +16,7 @@ import numpy as np
 from scipy.linalg import cho_solve, lapack
 from scipy.linalg.blas import ssyrk
 
-from nispcodec.core.arrays import Float32Array, Float64Array, IndexArray
+from nispcodec.core.arrays import Float32Array, Float64Array, FloatArray, IndexArray
 from nispcodec.core.errors import FitError
 from nispcodec.core.network import MAX_ROW_SHIFT
 from nispcodec.core.sample_set import SampleSet
@@ -147,7 +147,7 @@ class _Rise:
 
     def _off(self) -> Float32Array:
         """How far the outputs are from where they were, by the factors' columns (n, r)."""
-        return ((self._outputs() - self._first)[:, None] @ self._factors)[:, 0]
+        return np.einsum("nk,nkr->nr", self._outputs() - self._first, self._factors)
 
     def _outputs(self) -> Float32Array:
         return self._trainer.outputs(self.weights, self._samples.points, self._samples.chart)
@@ -155,10 +155,10 @@ class _Rise:
 
 def _along(factors: Float32Array, amounts: Float32Array) -> Float32Array:
     """So much (n, r) of each column of the factors (n, k, r): (n, k)."""
-    return np.ascontiguousarray((factors @ amounts[:, :, None])[:, :, 0])
+    return np.ascontiguousarray((factors @ amounts[:, :, None])[:, :, 0], dtype=np.float32)
 
 
-def _root(square: Float32Array, damping: float) -> Float64Array:
+def _root(square: FloatArray, damping: float) -> Float64Array:
     """Upper Cholesky factor of an upper triangle, with ten times the damping until there is one."""
     mean = float(np.diag(square).mean()) + TINY
     if not math.isfinite(mean):
@@ -179,7 +179,7 @@ def _grid(
     quantization: Quantization,
     most: int,
 ) -> tuple[Float64Array, Float64Array]:
-    """The step of each weight (weights,), and of each tensor, with which rounding costs what it may.
+    """The step of each weight (weights,), and of each tensor: rounding then costs what it may.
 
     An error of variance s^2 / 12 in each weight costs half its stiffness times that; at the optimum
     a bit less costs the same in every row. A row's step is its tensor's times a power of two of at

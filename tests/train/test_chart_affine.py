@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-import torch
 
 from nispcodec.core.network import Network, NetworkSpec
+from nispcodec.core.sample_set import SampleSet
 from nispcodec.infer.evaluate import evaluate
-from nispcodec.train.backend.torch.module import Module
 from nispcodec.train.chart_affine import affine_maps
+from nispcodec.train.initialization import initial_weights, place_chart_affine
+from nispcodec.train.layout import WeightLayout
 
 SLOPES = np.array([[[1, 2, 3], [0, -1, 0.5]], [[0.2, 0, 0], [0, 0.3, -4]]])
 OFFSETS = np.array([[0.1, 0.2], [0.5, -0.5]])
@@ -28,11 +29,11 @@ def test_a_network_of_zeros_answers_with_its_frames(mirror: int) -> None:
     spec = NetworkSpec((4,), 2, conditioning="chart_affine", charts=3, embedding=1, mirror=mirror)
     seen = np.where([mirror >> axis & 1 for axis in range(3)], np.abs(POINTS), POINTS)
     uvs = uvs_of(seen).astype(np.float32)
-    module = Module(spec, "cpu")
-    points, charts, wanted = map(torch.from_numpy, (POINTS, CHARTS, uvs))
-    module.place_chart_affine(points, charts, wanted, 1e-4)
+    layout, weights = WeightLayout(spec), initial_weights(spec)
+    samples = SampleSet(POINTS, np.zeros(200, np.float32), CHARTS.astype(np.int32), uvs)
+    place_chart_affine(weights, layout, samples, 1e-4)
     tensors = {name: np.zeros(shape, np.float32) for name, shape in spec.shapes.items()}
-    placed = module.network().tensors
+    placed = layout.network(weights).tensors
     network = Network(spec, tensors | {name: placed[name] for name in ("slopes", "offsets")})
     assert evaluate(network, POINTS, CHARTS) == pytest.approx(uvs, abs=2e-3)
 

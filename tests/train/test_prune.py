@@ -2,21 +2,19 @@
 
 from __future__ import annotations
 
-import threading
 from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
 import pytest
-import torch
 
 from nispcodec.core.arrays import Float32Array
 from nispcodec.core.errors import FitError, NispError
 from nispcodec.core.network import Network, NetworkSpec
 from nispcodec.core.progress import Progress, silent
 from nispcodec.format import pack, unpack
-from nispcodec.train.backend.torch.module import Module
-from nispcodec.train.loop import train
+from nispcodec.train.cores import one_core
+from nispcodec.train.layout import WeightLayout
 from nispcodec.train.lottery_ticket import fit, lottery_ticket
 from nispcodec.train.prune import (
     NETWORKS,
@@ -33,7 +31,7 @@ from nispcodec.train.prune import (
 )
 from nispcodec.train.task import Quantization, Schedule
 from tests import tiny
-from tests.train.test_loop import sdf_task
+from tests.train.fits import ENGINE, run, sdf_task
 
 SPEC = NetworkSpec((12, 7), 2, conditioning="embedding", charts=4, embedding=3)
 
@@ -153,7 +151,7 @@ def test_what_is_pruned_is_exactly_zero_in_the_file(optimizer: str, lambda_: flo
     )
     rng = np.random.default_rng(0)
     mask = {name: rng.random(kept.shape) < 0.4 for name, kept in everything(task.spec).items()}
-    network = written(train(task, 0, "cpu", threading.Lock(), silent, mask))
+    network = written(run(task, mask=mask))
     assert bool(network.steps) == (lambda_ > 0)
     for name, kept in mask.items():
         assert (network.tensors[name][~kept] == 0).all()
@@ -161,25 +159,25 @@ def test_what_is_pruned_is_exactly_zero_in_the_file(optimizer: str, lambda_: flo
     assert (network.tensors["bias.0"] != 0).mean() > 0.5
 
 
-def test_a_pruned_weight_has_no_gradient_and_no_place() -> None:
-    module = Module(SPEC, "cpu")
-    mask = {name: np.zeros_like(kept) for name, kept in everything(SPEC).items()}
+def test_a_pruned_weight_has_no_gradient() -> None:
+    task = sdf_task()
+    mask = {name: np.zeros_like(kept) for name, kept in everything(task.spec).items()}
     mask["weight.1"][0, 0] = True
-    module.prune(mask)
-    torch.autograd.backward(module(torch.rand(9, 3), torch.arange(9) % 4).sum())
-    assert module.weights.grad is not None
-    assert module.kept is not None
-    assert (module.weights.grad[module.kept == 0] == 0).all()
-    biases_and_embedding = 12 + 7 + 2 + 4 * 3
-    assert module.kept.sum() == 1 + biases_and_embedding
-    assert torch.equal(module.places, module.kept.nonzero()[:, 0])
+    layout = WeightLayout(task.spec)
+    kept = layout.kept(mask)
+    assert kept is not None
+    assert kept.sum() == 1 + 16 + 16 + 1
+    trainer = ENGINE.trainer(task, np.ones(task.spec.weight_count, np.float32), kept)
+    _, gradient = trainer.gradient(np.arange(9, dtype=np.int32))
+    assert not gradient[kept == 0].any()
+    assert gradient[kept == 1].any()
 
 
 def test_every_round_starts_from_the_same_weights() -> None:
     task = replace(sdf_task(), schedule=Schedule(1, 64, rate=0.0))
-    initial = train(task, 3, "cpu", threading.Lock(), silent)
+    initial = run(task, seed=3)
     mask = smallest(initial.tensors, everything(task.spec), 0.5)
-    rewound = train(task, 3, "cpu", threading.Lock(), silent, mask)
+    rewound = run(task, seed=3, mask=mask)
     for name, kept in mask.items():
         assert np.array_equal(rewound.tensors[name], initial.tensors[name] * kept)
 
@@ -205,7 +203,7 @@ def test_a_network_that_would_be_a_constant_is_an_error() -> None:
     pruning = Pruning("smallest_global", 0.995, 1)
     task = replace(sdf_task(), schedule=Schedule(2, 64), pruning=pruning)
     with pytest.raises(FitError, match=r"sdf network: nothing is left of weight.*lower prune rate"):
-        fit(task, 0, "cpu", threading.Lock(), silent)
+        fit(task, 0, ENGINE, one_core, silent)
 
 
 def test_rounds_are_told_and_only_the_last_is_quantized() -> None:
@@ -213,7 +211,7 @@ def test_rounds_are_told_and_only_the_last_is_quantized() -> None:
     quantization = Quantization(1e-4)
     task = replace(sdf_task(), schedule=Schedule(50, 128), quantization=quantization)
     task = replace(task, pruning=Pruning("smallest", 0.75, 2))
-    network = fit(task, 0, "cpu", threading.Lock(), seen.append)
+    network = fit(task, 0, ENGINE, one_core, seen.append)
     stages = list(dict.fromkeys(update.stage for update in seen))
     fits = [f"fit, round {number} of 3" for number in (1, 2, 3)]
     assert stages == [*fits, "quantize, round 3 of 3"]

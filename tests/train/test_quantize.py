@@ -3,28 +3,26 @@
 from __future__ import annotations
 
 import math
-import threading
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 import pytest
-import torch
 from hypothesis import given
 from hypothesis import strategies as st
 
+from nispcodec.core.arrays import Float32Array, Float64Array
 from nispcodec.core.errors import FitError
 from nispcodec.core.network import Network, NetworkSpec
-from nispcodec.core.progress import silent
+from nispcodec.core.sample_set import SampleSet
 from nispcodec.format import records
-from nispcodec.train.backend.torch.module import Module, snapped
-from nispcodec.train.batch import Batch
-from nispcodec.train.config import LossConfig, QuantizeConfig
-from nispcodec.train.loop import train
-from nispcodec.train.objectives import OBJECTIVES, SdfObjective
-from nispcodec.train.prune import everything
-from nispcodec.train.quantize import nearest, round_weights, shared_step
-from nispcodec.train.task import Quantization
-from tests.train.test_loop import ball_samples, module_of, sdf_task
+from nispcodec.train.config import LossConfig, QuantizeConfig, TrainConfig
+from nispcodec.train.initialization import initial_weights
+from nispcodec.train.layout import WeightLayout
+from nispcodec.train.objectives import OBJECTIVES, Objective, SdfObjective
+from nispcodec.train.prune import Mask, everything
+from nispcodec.train.quantize import Unrounded, nearest, round_weights, shared_step
+from nispcodec.train.task import Quantization, Schedule, Task
+from tests.train.fits import ENGINE, ball_samples, run, sdf_task
 
 SPECS = {
     "sdf": NetworkSpec((7, 6), 1, w0=5.0),
@@ -35,26 +33,59 @@ POINTS = 500
 OBJECTIVE = {name: kind(LossConfig()) for name, kind in OBJECTIVES.items()}
 
 
-def batch(name: str) -> Batch:
-    generator = torch.Generator().manual_seed(0)
-    points = Batch.of(ball_samples(POINTS, 0), "cpu")
-    charts = torch.randint(3, (POINTS,), generator=generator)
-    return replace(points, chart=charts, uv=torch.rand(POINTS, 2, generator=generator))
+def samples_of() -> SampleSet:
+    random = np.random.default_rng(0)
+    charts = random.integers(0, 3, POINTS, dtype=np.int32)
+    return replace(ball_samples(POINTS, 0), chart=charts, uv=random.random((POINTS, 2), np.float32))
 
 
-def rounded(
-    name: str, lambda_: float, config: QuantizeConfig = QuantizeConfig()
-) -> tuple[Module, Module]:
-    """A module of random weights, and the same rounded."""
-    before, after = (Module(SPECS[name], "cpu") for _ in range(2))
-    generator = torch.Generator().manual_seed(0)
-    round_weights(after, batch(name), Quantization(lambda_), OBJECTIVE[name], generator, config)
-    return before, after
+def unrounded(
+    name: str,
+    config: QuantizeConfig = QuantizeConfig(),
+    objective: Objective | None = None,
+    samples: SampleSet | None = None,
+    mask: Mask | None = None,
+) -> Unrounded:
+    """A network of initial weights."""
+    found = samples or samples_of()
+    training = TrainConfig(quantize=config)
+    judge = objective or OBJECTIVE[name]
+    task = Task(name, SPECS[name], found, found, judge, Schedule(1), config=training)
+    layout, weights = WeightLayout(task.spec), initial_weights(task.spec)
+    kept = layout.kept(mask)
+    trainer = ENGINE.trainer(task, weights, kept)
+    return Unrounded(task, layout, trainer, trainer.weights, weights, kept)
+
+
+@dataclass(frozen=True)
+class Pair:
+    """A network before and after it was rounded."""
+
+    before: Unrounded
+    weights: Float32Array
+    steps: Float64Array
+
+    @property
+    def network(self) -> Network:
+        return self.before.layout.network(self.weights, self.steps)
+
+    def outputs(self, weights: Float32Array) -> Float32Array:
+        samples = self.before.task.samples
+        return self.before.trainer.outputs(weights, samples.points, samples.chart)
+
+    def off(self, weights: Float32Array) -> Float32Array:
+        """How far the answers are from those before."""
+        return self.outputs(weights) - self.outputs(self.before.weights)
+
+
+def rounded(before: Unrounded, lambda_: float, bit_budget: float = 0.0) -> Pair:
+    random = np.random.default_rng(0)
+    return Pair(before, *round_weights(before, Quantization(lambda_, bit_budget), random))
 
 
 @pytest.mark.parametrize("name", SPECS)
 def test_every_tensor_is_symbols_times_its_step(name: str) -> None:
-    network = rounded(name, 1e-3)[1].network()
+    network = rounded(unrounded(name), 1e-3).network
     assert set(network.steps) == set(SPECS[name].shapes)
     for tensor_name, tensor in network.tensors.items():
         step = np.float32(network.steps[tensor_name])
@@ -64,58 +95,35 @@ def test_every_tensor_is_symbols_times_its_step(name: str) -> None:
 
 @pytest.mark.parametrize("name", SPECS)
 def test_the_file_holds_what_was_rounded(name: str) -> None:
-    module = rounded(name, 1e-3)[1]
-    part = batch(name)
-    stored = module_of(module.network())(part.points, part.chart).detach()
-    assert torch.allclose(module(part.points, part.chart).detach(), stored, atol=1e-4)
+    pair = rounded(unrounded(name), 1e-3)
+    stored = pair.outputs(pair.before.layout.vector(pair.network.tensors))
+    assert pair.outputs(pair.weights) == pytest.approx(stored, abs=1e-4)
 
 
-def outputs(module: Module, part: Batch) -> torch.Tensor:
-    return module(part.points, part.chart).detach()
-
-
-def alone(before: Module, after: Module) -> Module:
-    """A copy, each weight rounded to the nearest symbol of its own, on the other's grid."""
-    assert after.steps is not None
-    module = Module(before.spec, "cpu")
-    row_shifts = np.concatenate(
-        [tensor.row_shifts for tensor in records.tensors("sdf", after.network())]
-    )
-    grid = after.steps[after.groups] * 2 ** torch.from_numpy(row_shifts)[after.rows]
-    module.weights.data = ((before.weights.detach() / grid).round() * grid).float()
-    return module
+def alone(pair: Pair) -> Float32Array:
+    """Each weight rounded to the nearest symbol of its own, on the same grid."""
+    tensors = records.tensors("sdf", pair.network)
+    row_shifts = np.concatenate([tensor.row_shifts for tensor in tensors]).astype(np.float64)
+    layout = pair.before.layout
+    grid = pair.steps[layout.tensors] * 2 ** row_shifts[layout.rows]
+    return (np.rint(pair.before.weights / grid) * grid).astype(np.float32)
 
 
 @pytest.mark.parametrize("name", ["sdf", "uv"])
 def test_errors_cancel(name: str) -> None:
     """Each weight to its own nearest symbol, on the same grid, changes the answers far more."""
-    before, after = rounded(name, 1e-6)
-    part, each_alone = batch(name), alone(before, after)
-    off = [
-        (outputs(module, part) - outputs(before, part)).square().mean()
-        for module in (after, each_alone)
-    ]
-    assert off[0] < 0.6 * off[1]
+    pair = rounded(unrounded(name), 1e-6)
+    together, each_alone = (np.square(pair.off(w)).mean() for w in (pair.weights, alone(pair)))
+    assert together < 0.6 * each_alone
 
 
 @pytest.mark.parametrize("lambda_", [1e-2, 1e-3, 1e-4, 1e-5])
 def test_it_is_never_worse_than_each_weight_by_itself(lambda_: float) -> None:
-    before, after = rounded("sdf", lambda_)
-    part, each_alone = batch("sdf"), alone(before, after)
-    factors = OBJECTIVE["sdf"].factors(outputs(before, part), part)[:, 0]
-    rises = [
-        ((outputs(module, part) - outputs(before, part)) * factors).square().mean()
-        for module in (after, each_alone)
-    ]
+    pair = rounded(unrounded("sdf"), lambda_)
+    first, samples = pair.outputs(pair.before.weights), pair.before.task.samples
+    factors = OBJECTIVE["sdf"].factors(first, samples)[:, 0]
+    rises = [np.square(pair.off(w) * factors).mean() for w in (pair.weights, alone(pair))]
     assert rises[0] <= rises[1]
-
-
-@pytest.mark.parametrize("name", SPECS)
-def test_factors_are_of_the_shape_of_the_outputs(name: str) -> None:
-    part = batch(name)
-    found = OBJECTIVE[name].factors(outputs(rounded(name, 1e-3)[0], part), part)
-    assert found.shape[:2] == (POINTS, SPECS[name].outputs)
-    assert torch.isfinite(found).all()
 
 
 class Squared(SdfObjective):
@@ -123,18 +131,18 @@ class Squared(SdfObjective):
 
     damping = 1e-6
 
-    def factors(self, outputs: torch.Tensor, batch: Batch) -> torch.Tensor:
-        return torch.ones(len(outputs), 1, 1)
+    def factors(self, outputs: Float32Array, samples: SampleSet) -> Float32Array:
+        return np.ones((len(outputs), 1, 1), np.float32)
+
+
+SQUARED = Squared(LossConfig())
 
 
 def test_the_rise_is_what_lambda_says() -> None:
     """Of half the mean square, a loss whose second derivatives these are."""
-    module = Module(SPECS["sdf"], "cpu")
-    part = batch("sdf")
-    before, lambda_ = outputs(module, part), 1e-10
-    objective = Squared(LossConfig())
-    round_weights(module, part, Quantization(lambda_), objective, torch.Generator().manual_seed(0))
-    rise = float((outputs(module, part) - before).square().mean()) / 2
+    lambda_ = 1e-10
+    pair = rounded(unrounded("sdf", objective=SQUARED), lambda_)
+    rise = float(np.square(pair.off(pair.weights)).mean()) / 2
     assert rise == pytest.approx(lambda_ / (2 * math.log(2)), rel=0.5)
 
 
@@ -153,16 +161,16 @@ def test_nearest_is_at_most_half_a_step_off_in_the_metric(seed: int, size: int) 
 @pytest.mark.parametrize("bits", [4.0, 7.0, 10.0])
 def test_a_budget_is_kept(bits: float) -> None:
     """Of how far weights went from where they began, as a file has it."""
-    module, generator = Module(SPECS["sdf"], "cpu"), torch.Generator().manual_seed(0)
-    module.weights.data += module.first * torch.randn(len(module.first), generator=generator) / 2
-    count = len(module.weights)
-    budget = bits * count + QuantizeConfig.header_bits * len(module.scales)
-    quantization = Quantization(1e-3, budget)
-    round_weights(module, batch("sdf"), quantization, OBJECTIVE["sdf"], generator)
+    before = unrounded("sdf")
+    away = np.random.default_rng(0).normal(0, 0.5, len(before.weights))
+    moved = before.weights * (1 + away.astype(np.float32))
+    count, tensors = len(moved), len(before.layout.scales)
+    budget = bits * count + QuantizeConfig.header_bits * tensors
+    pair = rounded(replace(before, weights=moved), 1e-3, budget)
     found = sum(
         moves.size * max(0.0, math.log2(float(np.abs(moves).mean()) * 5.18))
         for moves in (
-            each.values(each.row_shifts, True) for each in records.tensors("sdf", module.network())
+            each.values(each.row_shifts, True) for each in records.tensors("sdf", pair.network)
         )
         if moves.any()
     )
@@ -170,57 +178,38 @@ def test_a_budget_is_kept(bits: float) -> None:
 
 
 def test_what_is_pruned_stays_zero_and_a_whole_tensor_may_go() -> None:
-    module = Module(SPECS["sdf"], "cpu")
     mask = {name: np.ones_like(kept) for name, kept in everything(SPECS["sdf"]).items()}
     mask["weight.1"][:] = False
     mask["weight.0"][::2] = False
-    module.prune(mask)
-    quantization, objective = Quantization(1e-6), OBJECTIVE["sdf"]
-    round_weights(module, batch("sdf"), quantization, objective, torch.Generator().manual_seed(0))
-    network = module.network()
+    network = rounded(unrounded("sdf", mask=mask), 1e-6).network
     assert not network.tensors["weight.1"].any()
     assert not network.tensors["weight.0"][::2].any()
     assert network.tensors["weight.0"].any()
 
 
 def test_fewer_points_than_weights_will_do() -> None:
-    module = Module(SPECS["sdf"], "cpu")
-    few = next(iter(batch("sdf").parts(5)))
-    quantization, objective = Quantization(1e-6), Squared(LossConfig())
-    round_weights(module, few, quantization, objective, torch.Generator().manual_seed(0))
-    assert torch.isfinite(module.weights).all()
+    pair = rounded(unrounded("sdf", objective=SQUARED, samples=samples_of()[:5]), 1e-6)
+    assert np.isfinite(pair.weights).all()
 
 
 def test_weights_that_are_not_finite_are_an_error() -> None:
-    module = Module(SPECS["sdf"], "cpu")
-    module.weights.data[3] = float("nan")
-    quantization, objective = Quantization(1e-3), OBJECTIVE["sdf"]
+    before = unrounded("sdf")
+    before.weights[3] = np.nan
     with pytest.raises(FitError, match="expected finite derivatives, found NaN"):
-        round_weights(
-            module, batch("sdf"), quantization, objective, torch.Generator().manual_seed(0)
-        )
+        rounded(before, 1e-3)
 
 
 def test_blocks_make_up_for_each_other() -> None:
-    part, off = batch("sdf"), []
-    for size, shares in ((40, (0.0,)), (40, (0.0, 0.1, 0.3, 1.0))):
-        config = QuantizeConfig(whole=0, block=size, newton_shares=shares)
-        before, after = rounded("sdf", 1e-7, config)
-        off.append(float((outputs(before, part) - outputs(after, part)).abs().mean()))
+    off = []
+    for shares in ((0.0,), (0.0, 0.1, 0.3, 1.0)):
+        config = QuantizeConfig(whole=0, block=40, newton_shares=shares)
+        pair = rounded(unrounded("sdf", config), 1e-7)
+        off.append(float(np.abs(pair.off(pair.weights)).mean()))
     assert off[1] < 0.9 * off[0]
 
 
-@pytest.mark.parametrize("step", [1e-9, 0.0123, 1.0, 31.9, 1e6])
-def test_a_snapped_step_is_near_and_stays(step: float) -> None:
-    near = snapped(step)
-    assert near == pytest.approx(step, rel=1 / 16)
-    assert snapped(near * (1 + 1e-6)) == near
-    assert math.frexp(near)[0] * 16 % 1 == 0
-
-
 def fitted(lambda_: float) -> Network:
-    task = replace(sdf_task(100), quantization=Quantization(lambda_))
-    return train(task, 0, "cpu", threading.Lock(), silent)
+    return run(replace(sdf_task(100), quantization=Quantization(lambda_)))
 
 
 def test_a_higher_lambda_buys_fewer_bits() -> None:
@@ -232,7 +221,7 @@ def test_a_higher_lambda_buys_fewer_bits() -> None:
 
 
 def test_without_rounding_the_weights_stay_float() -> None:
-    assert not train(sdf_task(50), 0, "cpu", threading.Lock(), silent).steps
+    assert not run(sdf_task(50)).steps
 
 
 steps_of_rows = st.lists(st.floats(1e-6, 1e3), min_size=1, max_size=40)

@@ -11,7 +11,7 @@ from nispcodec.train.backend.protocol import Engine
 
 
 def choose_engine(wanted: str, device: str, published: bool, listen: Listener) -> Engine:
-    """The engine `wanted` ("auto", "native", "torch") on a device ("auto", "cpu", "cuda", "cuda:1").
+    """The engine `wanted` ("auto", "native", "torch") on a device ("auto", "cpu", "cuda:1").
 
     "auto" is the native one wherever that can do the work: it needs no torch, and for networks as
     small as these it is faster than a GPU. Torch does what the native one cannot: CUDA, and the

@@ -8,7 +8,9 @@ import torch
 
 from nispcodec.core.network import NetworkSpec
 from nispcodec.infer.evaluate import evaluate
-from nispcodec.train.backend.torch.module import Module
+from nispcodec.train.backend.torch.forward import Forward
+from nispcodec.train.initialization import initial_weights
+from nispcodec.train.layout import WeightLayout
 from nispcodec.train.tasks import paper_chart, paper_sdf, paper_uv
 
 SPECS = {
@@ -30,15 +32,13 @@ SPECS = {
 @pytest.mark.parametrize("name", SPECS)
 def test_both_sides_agree(name: str) -> None:
     spec = SPECS[name]
-    module = Module(spec, "cpu")
+    layout, weights = WeightLayout(spec), initial_weights(spec)
     random = np.random.default_rng(0)
     points = random.uniform(-1, 1, (50, 3)).astype(np.float32)
     charts = random.integers(0, 5 if spec.charts == 5 else max(spec.charts, 1), 50)
+    expected = Forward(layout, "cpu")(*map(torch.from_numpy, (weights, points, charts))).numpy()
     conditioned = spec.conditioning != "none"
-    with torch.no_grad():
-        given = torch.from_numpy(charts) if conditioned else None
-        expected = module(torch.from_numpy(points), given).numpy()
-    found = evaluate(module.network(), points, charts if conditioned else None)
+    found = evaluate(layout.network(weights), points, charts if conditioned else None)
     assert found == pytest.approx(expected, abs=2e-4)
 
 
@@ -47,9 +47,3 @@ def test_the_published_weight_counts() -> None:
     assert paper_uv(190).weight_count == 31_874
     assert paper_chart(190).weight_count == 43_454
     assert paper_sdf().weight_count == 31_169
-
-
-def test_the_module_holds_exactly_the_weights_of_its_spec() -> None:
-    spec = SPECS["embedding"]
-    module = Module(spec, "cpu")
-    assert len(module.weights) == spec.weight_count
