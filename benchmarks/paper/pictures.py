@@ -18,7 +18,6 @@ from pathlib import Path
 
 import click
 import numpy as np
-from torch import Tensor
 
 import nispcodec
 from benchmarks.measuring.model_records import measured, models_options
@@ -47,8 +46,7 @@ from nispcodec.render.field import OPENING
 from nispcodec.render.fragments import Scene
 from nispcodec.render.images import image_bytes
 from nispcodec.render.views import scene_of
-from nispcodec.train.backend.torch.module import Module
-from nispcodec.train.batch import Batch
+from nispcodec.train.backend.choice import choose_engine
 from nispcodec.train.config import TrainConfig
 from nispcodec.train.objectives import UvObjective
 from nispcodec.train.task import Schedule, Task
@@ -78,13 +76,9 @@ def asked(results: Record) -> Iterator[Asked]:
 class PointObjective(UvObjective):
     """Mean absolute error of a network that sees the point alone; `uv` holds its targets."""
 
-    def loss(self, module: Module, batch: Batch) -> Tensor:
-        """See the class."""
-        return (module(batch.points) - batch.uv).abs().mean()
-
-    def error(self, module: Module, batch: Batch) -> Tensor:
-        """The same."""
-        return self.loss(module, batch)
+    def error(self, outputs: Float32Array, samples: SampleSet) -> float:
+        """The loss."""
+        return self.loss(outputs, samples)
 
 
 def baselines(mesh: TexturedMesh, model: NispModel, seed: int, threads: int) -> dict[str, Network]:
@@ -105,7 +99,8 @@ def baselines(mesh: TexturedMesh, model: NispModel, seed: int, threads: int) -> 
             ("color", as_large, colored),
         )
     ]
-    return fit_networks(tasks, seed, "cpu", threads, _told)
+    engine = choose_engine("auto", "cpu", False, _told)
+    return fit_networks(tasks, seed, engine, threads, _told)
 
 
 _UV = ("chart", "uv")

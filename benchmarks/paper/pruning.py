@@ -11,20 +11,19 @@ from __future__ import annotations
 
 import time
 from collections.abc import Sequence
-from contextlib import nullcontext
 from dataclasses import replace
 from pathlib import Path
 
 import click
 import numpy as np
 import torch
-from torch import Tensor
 
 from benchmarks.measuring.machine import commit, machine, versions
 from benchmarks.measuring.result_file import Record, result_so_far, write_result
 from benchmarks.paper.pruning_figure import draw, tables
 from benchmarks.paper.pruning_published import RATES, SIZED, SIZES
 from benchmarks.studies.codings import stored
+from nispcodec.core.arrays import Float32Array
 from nispcodec.core.network import Network
 from nispcodec.core.progress import silent
 from nispcodec.core.sample_set import SampleSet
@@ -35,9 +34,9 @@ from nispcodec.geometry.analysis import analyze
 from nispcodec.geometry.config import GeometryConfig
 from nispcodec.infer.evaluate import evaluate
 from nispcodec.io.load import load_mesh
-from nispcodec.train.backend.torch.module import Module
-from nispcodec.train.batch import Batch
+from nispcodec.train.backend.torch.engine import TorchEngine
 from nispcodec.train.config import TrainConfig
+from nispcodec.train.cores import one_core
 from nispcodec.train.loop import train
 from nispcodec.train.lottery_ticket import lottery_ticket
 from nispcodec.train.objectives import UvObjective
@@ -55,9 +54,9 @@ SAMPLES, TEST = 200_000, 10_000
 class AbsoluteUv(UvObjective):
     """Judged by the paper's loss."""
 
-    def error(self, module: Module, batch: Batch) -> Tensor:
+    def error(self, outputs: Float32Array, samples: SampleSet) -> float:
         """Mean absolute error of u and v."""
-        return self.loss(module, batch)
+        return self.loss(outputs, samples)
 
 
 def paper_networks(path: Path, steps: int) -> list[Task]:
@@ -85,7 +84,7 @@ def series(task: Task, strategy: str) -> list[Record]:
     rounds: list[Record] = []
 
     def trained(mask: Mask, rate: float) -> Network:
-        network = train(task, SEED, "cpu", nullcontext(), silent, mask)
+        network = train(task, SEED, TorchEngine("cpu"), one_core, silent, mask)
         found = quality(network, task.held_out)
         rounds.append({"rate": rate, "quality": found, "kept": _kept(mask)})
         if strategy == "smallest" and rate in (0.0, SIZED[task.name]):

@@ -11,7 +11,7 @@ from nispcodec.encode import fitting
 from nispcodec.train.config import LossConfig
 from nispcodec.train.objectives import SdfObjective
 from nispcodec.train.task import Quantization, Schedule, Task
-from tests.train.test_loop import ball_samples
+from tests.train.fits import ENGINE, ball_samples
 
 
 def fitted() -> Network:
@@ -27,7 +27,7 @@ def fitted() -> Network:
     )
     # As the encoder finds it: the benchmark puts another in its place.
     fit = vars(fitting)["fit_networks"]
-    return fit([task], 0, "cpu", 1, silent)["sdf"]
+    return fit([task], 0, ENGINE, 1, silent)["sdf"]
 
 
 def test_floats_are_what_the_same_fit_rounds() -> None:

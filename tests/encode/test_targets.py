@@ -27,7 +27,7 @@ from nispcodec.train.config import TrainingBudget
 from nispcodec.train.task import Task
 from nispcodec.train.tasks import AssetProblem
 from nispcodec.train.workers import fit_networks
-from tests.train.test_loop import ball_samples
+from tests.train.fits import ENGINE, ball_samples
 
 TABLE = ChartTable(materials=np.zeros(1, np.int32), has_uv=np.zeros(1, np.bool_))
 
@@ -40,7 +40,7 @@ def problem() -> AssetProblem:
 
 
 def really(tasks: list[Task], listen: Listener) -> Networks:
-    return fit_networks(tasks, 0, "cpu", 2, listen)
+    return fit_networks(tasks, 0, ENGINE, 2, listen)
 
 
 def by_law(tasks: list[Task], listen: Listener) -> Networks:
