@@ -1,0 +1,108 @@
+"""Builds the native training backend, where there is a compiler for it; all else: pyproject.toml.
+
+One library for each instruction set, which Python loads by ctypes: so they are for any Python, and
+the wheel is for a platform, but not for a Python. Without them training takes torch, so nothing
+that goes wrong here may keep anyone from installing.
+"""
+
+from __future__ import annotations
+
+import platform
+import sys
+from pathlib import Path
+from typing import Any
+
+from setuptools import Extension, setup
+from setuptools.command.bdist_wheel import bdist_wheel
+from setuptools.command.build_ext import build_ext
+
+PACKAGE = "nispcodec.train.backend.native"
+KERNEL = "nispcodec/train/backend/native/kernel"
+# -ffast-math is not wanted: kernel/vectors.h says why.
+COMPILE = (
+    "-std=c++17 -O3 -fno-math-errno -fno-trapping-math -ffp-contract=fast"
+    " -fvisibility=hidden -Wall -Wextra -Wno-psabi -pthread -g0"
+).split()
+# Name of the instruction set: floats in a vector, and what the compiler is told.
+INSTRUCTION_SETS = {
+    "x86_64": {
+        "v2": (4, ["-march=x86-64-v2"]),
+        "v3": (8, ["-march=x86-64-v3"]),
+        "v4": (16, ["-march=x86-64-v4"]),
+    },
+    "arm64": {"neon": (4, [])},
+}
+MACHINES = {"AMD64": "x86_64", "aarch64": "arm64"}
+
+
+def kernels() -> list[Extension]:
+    """Those for this machine; none for one that is not known."""
+    machine = MACHINES.get(platform.machine(), platform.machine())
+    return [
+        Extension(
+            f"{PACKAGE}._kernel_{isa}",
+            [f"{KERNEL}/interface.cpp"],
+            depends=[str(path) for path in sorted(Path(KERNEL).glob("*.h"))],
+            define_macros=[("NISP_VECTOR_LENGTH", str(length))],
+            extra_compile_args=[*COMPILE, *told],
+            extra_link_args=["-pthread"],
+            language="c++",
+            optional=True,
+        )
+        for isa, (length, told) in INSTRUCTION_SETS.get(machine, {}).items()
+    ]
+
+
+class BuildKernels(build_ext):
+    """Builds what it can, and says in one line what it cannot."""
+
+    failure = ""
+
+    def run(self) -> None:
+        """Build all kernels, whatever happens."""
+        try:
+            super().run()
+        except Exception as why:
+            self.failure = self.failure or str(why)
+        if self.failure:
+            print(
+                f"warning: training will take torch alone, as no kernel was built: {self.failure}"
+            )
+
+    def build_extension(self, ext: Extension) -> None:
+        """Build one, unless one before it failed."""
+        if self.failure:
+            return
+        try:
+            # Each has objects of its own: the source is the same.
+            self.build_temp, kept = str(Path(self.build_temp, ext.name)), self.build_temp
+            super().build_extension(ext)
+            self.build_temp = kept
+        except Exception as why:
+            self.failure = " ".join(str(why).split())
+
+    def get_ext_filename(self, fullname: str) -> str:
+        """A plain name: no Python's ABI is in it."""
+        return str(Path(*fullname.split("."))) + ".so"
+
+    def get_export_symbols(self, ext: Extension) -> list[str]:
+        """None of Python's."""
+        return list(ext.export_symbols)
+
+    def built(self) -> bool:
+        """Whether there is any kernel."""
+        return any(Path(self.get_ext_fullpath(ext.name)).exists() for ext in self.extensions)
+
+
+class Wheel(bdist_wheel):
+    """For any Python 3, and for any platform where no kernel was built."""
+
+    def get_tag(self) -> tuple[str, str, str]:
+        """Tags of Python, ABI and platform."""
+        kernels_are_there = any(Path(self.bdist_dir).rglob("_kernel_*.so"))
+        return "py3", "none", super().get_tag()[2] if kernels_are_there else "any"
+
+
+if __name__ == "__main__":
+    commands: dict[str, Any] = {"build_ext": BuildKernels, "bdist_wheel": Wheel}
+    setup(ext_modules=[] if sys.platform == "win32" else kernels(), cmdclass=commands)
