@@ -19,10 +19,19 @@ from setuptools.command.build_ext import build_ext
 PACKAGE = "nispcodec.train.backend.native"
 KERNEL = "nispcodec/train/backend/native/kernel"
 # -ffast-math is not wanted: kernel/vectors.h says why.
-COMPILE = (
-    "-std=c++17 -O3 -fno-math-errno -fno-trapping-math -ffp-contract=fast"
-    " -fvisibility=hidden -Wall -Wextra -Wno-psabi -pthread -g0"
-).split()
+COMPILE = [
+    "-std=c++17",
+    "-O3",
+    "-fno-math-errno",
+    "-fno-trapping-math",
+    "-ffp-contract=fast",
+    "-fvisibility=hidden",
+    "-Wall",
+    "-Wextra",
+    "-Wno-psabi",
+    "-pthread",
+    "-g0",
+]
 # Name of the instruction set: floats in a vector, and what the compiler is told.
 INSTRUCTION_SETS = {
     "x86_64": {

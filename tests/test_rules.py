@@ -19,7 +19,7 @@ RULES: dict[str, tuple[set[str], set[str]]] = {
     "io": ({"numpy", "PIL"}, {"core"}),
     "geometry": ({"numpy", "scipy", "igl"}, {"core"}),
     "dataset": ({"numpy", "scipy"}, {"core", "geometry"}),
-    "train": ({"numpy", "torch"}, {"core", "dataset"}),
+    "train": ({"numpy", "scipy", "threadpoolctl", "torch"}, {"core", "dataset"}),
     "format": ({"numpy", "msgpack", "zstandard"}, {"core"}),
     "infer": ({"numpy", "threadpoolctl"}, {"core"}),
     "extract": ({"numpy", "fast_simplification"}, {"core", "infer"}),

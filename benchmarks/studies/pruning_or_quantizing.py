@@ -16,13 +16,11 @@ from __future__ import annotations
 
 import time
 from collections.abc import Iterator, Sequence
-from contextlib import nullcontext
 from dataclasses import replace
 from pathlib import Path
 
 import click
 import numpy as np
-import torch
 
 from benchmarks.measuring.machine import commit, machine, versions
 from benchmarks.measuring.result_file import Record, result_so_far, write_result
@@ -36,7 +34,9 @@ from nispcodec.dataset.sampler import Sampler
 from nispcodec.geometry.analysis import analyze
 from nispcodec.infer.evaluate import evaluate
 from nispcodec.io.load import load_mesh
+from nispcodec.train.backend.choice import choose_engine
 from nispcodec.train.config import TrainConfig
+from nispcodec.train.cores import one_core
 from nispcodec.train.loop import train
 from nispcodec.train.lottery_ticket import lottery_ticket
 from nispcodec.train.objectives import SdfObjective, UvObjective
@@ -85,6 +85,7 @@ def measure(task: Task, seed: int) -> list[Record]:
     """Every setting of one network: {"rate", "price", "width", "bytes", "error"}."""
     points: list[Record] = []
     masks: dict[float, Mask] = {}
+    engine = choose_engine("auto", "cpu", False, silent)
 
     def fitted(mask: Mask | None, price: float, width: float = 1.0) -> Network:
         preset = task.config.networks[task.name].lambda_
@@ -92,7 +93,7 @@ def measure(task: Task, seed: int) -> list[Record]:
         hidden = tuple(even_width(width * each) for each in task.spec.hidden)
         spec = replace(task.spec, hidden=hidden)
         priced = replace(task, spec=spec, quantization=quantization if price else None)
-        return train(priced, seed, "cpu", nullcontext(), silent, mask)
+        return train(priced, seed, engine, one_core, silent, mask)
 
     def add(network: Network, rate: float, price: float, width: float = 1.0) -> None:
         setting = {"rate": rate, "price": price, "width": width}
@@ -208,7 +209,6 @@ def _mean(values: Sequence[float]) -> float:
 @click.option("--table", "only_table", is_flag=True, help="Train nothing.")
 def main(assets: Path, seeds: int, steps: int, output: Path, only_table: bool) -> None:
     """Run what is missing, on one core; print the table."""
-    torch.set_num_threads(1)
     if not only_table:
         run(assets, seeds, steps, output)
     cases = [case for case in _read(output) if case["steps"] == steps]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from nispcodec.core.arrays import Float32Array, Int32Array
+from nispcodec.core.arrays import FloatArray, Int32Array
 
 
 class Batches:
@@ -22,7 +22,7 @@ class Batches:
         """The samples (steps, size) of the next steps."""
         return np.stack([self._next() for _ in range(steps)])
 
-    def prefer(self, hardness: Float32Array) -> None:
+    def prefer(self, hardness: FloatArray) -> None:
         """From now on; (count,), 0 for a sample that is not hard. A new round begins."""
         self._hard = np.flatnonzero(hardness).astype(np.int32)
         self._upto = np.cumsum(hardness[self._hard], dtype=np.float64)

@@ -9,7 +9,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from nispcodec.core.arrays import Float32Array, Float64Array
+from nispcodec.core.arrays import Float32Array, Float64Array, FloatArray
 from nispcodec.core.errors import FitError
 from nispcodec.core.network import MAX_INIT_SEED, Network
 from nispcodec.core.progress import Listener, Progress
@@ -71,7 +71,7 @@ class _Run:
         self.best = self.trainer.weights
         self.error_radii = engine.error_radii(task)
         self.batches = Batches(len(task.samples), task.schedule.batch, self.random)
-        self.hardness = np.zeros(len(task.samples), dtype=np.float32)
+        self.hardness: FloatArray = np.zeros(len(task.samples), dtype=np.float32)
         self.rates = _rates(task.schedule, self.config.loop)
 
     def fit(self) -> Network:
@@ -130,7 +130,7 @@ class _Run:
                 f"{self.best_error:g}"
             )
         self.trainer.restart(self.best)
-        self.rates = self.rates / 2
+        self.rates = (self.rates / 2).astype(np.float32)
         rate = self.task.schedule.rate / 2**self.retries
         return f"diverged at step {done}: going on from the best weights at rate {rate:g}"
 
@@ -148,7 +148,7 @@ class _Run:
         samples, config = self.task.samples, self.config.hard_examples
         field = self.trainer.outputs(self.trainer.weights, samples.points, samples.chart)[:, 0]
         radii = self.error_radii(field, config.error_radius, floaters)
-        self.hardness = np.maximum(self.hardness * np.float32(config.memory), radii)
+        self.hardness = np.maximum(config.memory * self.hardness, radii)
         self.batches.prefer(self.hardness)
 
     def _network(self) -> Network:

@@ -39,5 +39,5 @@ def test_signed_axes_start_unseen_and_tables_of_maps_empty() -> None:
 
 
 def test_coordinates_are_mirrored_and_signed_ones_follow() -> None:
-    points = np.float32([[-1, -2, -3]])
+    points = np.array([[-1, -2, -3]], np.float32)
     assert coordinates(SPEC, points).tolist() == [[1, -2, -3, -1]]

@@ -100,7 +100,7 @@ def test_mining_brings_back_a_part_that_few_samples_show() -> None:
     """Of 8000 samples eight lie in the small ball."""
 
     def small(points: Float32Array) -> Float32Array:
-        far = np.linalg.norm(points - np.float32([0.75, 0, 0]), axis=1)
+        far = np.linalg.norm(points - np.array([0.75, 0, 0]), axis=1)
         return (far - 0.13).astype(np.float32)
 
     def two_balls(count: int, seed: int) -> SampleSet:

@@ -63,7 +63,7 @@ def test_factors_have_a_row_for_every_output(name: str) -> None:
 
 
 def test_a_chart_that_is_sure_bends_less_than_one_in_doubt() -> None:
-    outputs = np.float32([[0, 1], [0, 50]])
+    outputs = np.array([[0, 1], [0, 50]], np.float32)
     few = SAMPLES[:2]
     doubt, sure = np.abs(objective("chart").factors(outputs, few)).sum(axis=(1, 2))
     assert doubt > 2 * sure > 0

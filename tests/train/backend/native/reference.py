@@ -4,22 +4,25 @@ from __future__ import annotations
 
 import numpy as np
 import torch
-from torch import Tensor
 
 from nispcodec.core.arrays import Float32Array, Float64Array, FloatArray, Int32Array
 from nispcodec.core.network import NetworkSpec
 from nispcodec.core.sample_set import SampleSet
-from nispcodec.train.backend.native.engine import NativeTrainer, Settings
-from nispcodec.train.backend.torch.module import Module
-from nispcodec.train.backend.torch.muon import Muon
-from nispcodec.train.backend.torch.soap import Soap
-from nispcodec.train.backend.torch.stack import Matrices
-from nispcodec.train.batch import Batch
-from nispcodec.train.config import TrainConfig
+from nispcodec.train.backend.native.settings import Settings
+from nispcodec.train.backend.native.trainer import NativeTrainer
+from nispcodec.train.backend.torch.batch import Batch
+from nispcodec.train.backend.torch.forward import Forward
+from nispcodec.train.backend.torch.losses import LOSSES
+from nispcodec.train.backend.torch.trainer import TorchTrainer
+from nispcodec.train.config import LoopConfig, TrainConfig
+from nispcodec.train.initialization import initial_weights
+from nispcodec.train.layout import WeightLayout
 from nispcodec.train.objectives import OBJECTIVES
-from nispcodec.train.soap_bases import bases
+from nispcodec.train.task import Schedule, Task
 
-CONFIG = TrainConfig()
+# The running mean is over a tenth of the steps, here ten.
+CONFIG = TrainConfig(loop=LoopConfig(ema_share=0.1))
+SCHEDULE = Schedule(100, momentum_share=0.04, last_layer_lr_scale=0.3)
 SETTINGS = Settings.of(CONFIG, momentum_share=0.04, last_layer_rate=0.3, ema_weight=0.1)
 
 CASES: dict[str, tuple[NetworkSpec, str]] = {
@@ -68,7 +71,7 @@ def rows(count: int, batch: int, steps: int = 1, seed: int = 1) -> Int32Array:
 
 def some_weights(spec: NetworkSpec, seed: int = 2) -> Float32Array:
     """Initial ones, and tables and biases that are not 0."""
-    first = Module(spec, "cpu").first.numpy().copy()
+    first = initial_weights(spec)
     first += np.random.default_rng(seed).normal(0, 0.02, first.size).astype(np.float32)
     return first
 
@@ -80,76 +83,25 @@ def native(name: str, isa: str | None = None, kept: Float32Array | None = None) 
     return NativeTrainer(spec, samples(spec), loss, start, kept, SETTINGS, isa=isa)
 
 
-class TorchTrainer:
-    """The same with torch, one step at a time."""
-
-    def __init__(self, name: str, kept: Float32Array | None = None) -> None:
-        spec, loss = CASES[name]
-        self.module = Module(spec, "cpu")
-        self.objective = OBJECTIVES[loss](CONFIG.loss)
-        self.samples = Batch.of(samples(spec), "cpu")
-        self.module.weights.data = torch.from_numpy(some_weights(spec))
-        if kept is not None:
-            self.module.kept = torch.from_numpy(kept)
-            self.module.apply_mask()
-        hidden, others = self.module.matrices(SETTINGS.last_layer_rate)
-        self.soaps = [DefinedSoap(self.module.weights, [matrix]) for matrix in others]
-        share = SETTINGS.momentum_share
-        self.muon = Muon(self.module.weights, hidden, share, CONFIG.muon) if hidden else None
-        self.mean = self.module.weights.detach().clone()
-
-    def gradient(self, chosen: Int32Array) -> tuple[float, Float32Array]:
-        """Loss and gradient of some samples."""
-        batch = self.samples.chosen(torch.from_numpy(chosen).long())
-        loss = self.objective.loss(self.module, batch)
-        self.module.weights.grad = None
-        loss.backward()  # type: ignore[no-untyped-call]
-        assert self.module.weights.grad is not None
-        return float(loss.detach()), self.module.weights.grad.numpy()
-
-    def step(self, chosen: Int32Array, rate: float) -> float:
-        """One whole step; returns the loss before."""
-        loss, _ = self.gradient(chosen)
-        gradient = self.module.weights.grad
-        assert gradient is not None
-        gradient.mul_((SETTINGS.clip / (gradient.norm() + 1e-12)).clamp_(max=1.0))
-        for optimizer in (*self.soaps, *([self.muon] if self.muon else [])):
-            optimizer.step(rate)
-        self.module.apply_mask()
-        self.mean.lerp_(self.module.weights.detach(), SETTINGS.ema_weight)
-        return loss
-
-    @property
-    def weights(self) -> Float32Array:
-        """As they are now."""
-        return self.module.weights.detach().numpy()
+def by_torch(name: str, kept: Float32Array | None = None) -> TorchTrainer:
+    """The same with torch."""
+    spec, loss = CASES[name]
+    objective = OBJECTIVES[loss](CONFIG.loss)
+    found = samples(spec)
+    task = Task(name, spec, found, found, objective, SCHEDULE, config=CONFIG)
+    return TorchTrainer(task, some_weights(spec), kept, "cpu")
 
 
 def exact_gradient(case: str | NetworkSpec, chosen: Int32Array) -> tuple[float, Float64Array]:
     """Loss and gradient of some samples by torch in float64; of an SDF for a spec."""
     spec, loss = (case, "sdf") if isinstance(case, NetworkSpec) else CASES[case]
-    module, batch = Module(spec, "cpu"), Batch.of(samples(spec)[chosen], "cpu")
-    module.weights = torch.from_numpy(some_weights(spec)).double().requires_grad_()
+    batch = Batch.of(samples(spec)[chosen], "cpu")
     exact = Batch(batch.points.double(), batch.sdf.double(), batch.chart, batch.uv.double())
-    found = OBJECTIVES[loss](CONFIG.loss).loss(module, exact)
-    (gradient,) = torch.autograd.grad(found, module.weights)
+    weights = torch.from_numpy(some_weights(spec)).double().requires_grad_()
+    outputs = Forward(WeightLayout(spec), "cpu")(weights, exact.points, exact.chart)
+    found = LOSSES[loss](outputs, exact, CONFIG.loss)
+    (gradient,) = torch.autograd.grad(found, weights)
     return float(found.detach()), gradient.numpy()
-
-
-class DefinedSoap(Soap):
-    """SOAP whose first bases are those of `nispcodec.train.soap_bases`."""
-
-    def __init__(self, weights: Tensor, matrices: Matrices) -> None:
-        super().__init__(weights, matrices, CONFIG.soap)
-
-    def step(self, scale: float) -> None:
-        """See `Soap`."""
-        new = self.state is None
-        super().step(scale)
-        if new and self.state is not None:
-            left, right = bases(self.stack.gradient()[0].numpy())
-            self.state.left_basis = torch.from_numpy(left)[None]
-            self.state.right_basis = torch.from_numpy(right)[None]
 
 
 def relative(found: FloatArray, wanted: FloatArray) -> float:

@@ -2,11 +2,9 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-import torch
 
-from nispcodec.core.arrays import Float32Array
 from nispcodec.core.sample_set import SampleSet
-from tests.train.backend.native.reference import CASES, TorchTrainer, native, relative, samples
+from tests.train.backend.native.reference import CASES, by_torch, native, relative, samples
 
 COUNT = 300
 
@@ -19,22 +17,9 @@ def asked(name: str) -> SampleSet:
 def test_outputs_are_those_of_torch(name: str) -> None:
     trainer, points = native(name), asked(name)
     found = trainer.outputs(trainer.weights, points.points, points.chart)
-    module = TorchTrainer(name).module
-    with torch.no_grad():
-        chart = torch.from_numpy(points.chart).long()
-        wanted = module(torch.from_numpy(points.points), chart).numpy()
+    wanted = by_torch(name).outputs(trainer.weights, points.points, points.chart)
     assert found.shape == wanted.shape
     assert relative(found, wanted) < 2e-6
-
-
-def torch_slopes(name: str, directions: Float32Array) -> Float32Array:
-    """One backward pass for each sample."""
-    module, points = TorchTrainer(name).module, asked(name)
-    chart = torch.from_numpy(points.chart).long()
-    outputs = module(torch.from_numpy(points.points), chart)
-    along = (outputs * torch.from_numpy(directions)).sum(dim=1)
-    rows = [torch.autograd.grad(each, module.weights, retain_graph=True)[0] for each in along]
-    return torch.stack(rows).numpy()
 
 
 @pytest.mark.parametrize("name", ["sdf", "signed axes", "charts", "uv, embedding", "uv, 40 charts"])
@@ -42,8 +27,8 @@ def test_slopes_are_those_of_torch(name: str) -> None:
     trainer, points = native(name), asked(name)
     outputs = trainer.spec.outputs
     directions = np.random.default_rng(6).normal(size=(COUNT, outputs)).astype(np.float32)
-    wanted = torch_slopes(name, directions)
     told = (trainer.weights, points.points, points.chart, directions)
+    wanted = by_torch(name).slopes(*told)
     found = trainer.slopes(*told)
     assert relative(found, wanted) < 2e-6
     places = np.random.default_rng(7).integers(0, trainer.spec.weight_count, 50)

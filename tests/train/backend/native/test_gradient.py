@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from nispcodec.core.network import NetworkSpec
-from nispcodec.train.backend.native.engine import NativeTrainer
+from nispcodec.train.backend.native.trainer import NativeTrainer
 from tests.train.backend.native.reference import (
     CASES,
     SETTINGS,

@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 
 from nispcodec.core.network import NetworkSpec
-from nispcodec.train.backend.native.engine import NativeError, NativeTrainer, library, why_not
+from nispcodec.train.backend.native.library import NativeError, library
+from nispcodec.train.backend.native.trainer import NativeTrainer, why_not
 from tests.train.backend.native.reference import (
     CASES,
     SETTINGS,
@@ -103,7 +104,7 @@ def test_wrong_arrays_are_refused() -> None:
     with pytest.raises(ValueError, match="weights"):
         trainer.restart(weights[:-1])
     with pytest.raises(ValueError, match="weights"):
-        trainer.outputs(weights.astype(np.float64), points, charts)  # type: ignore[arg-type]
+        trainer.outputs(weights.astype(np.float64), points, charts)
     with pytest.raises(ValueError, match="points"):
         trainer.outputs(weights, points[:, :2], charts)
     for wrong in (None, charts[:-1], charts + 40, charts - 40):

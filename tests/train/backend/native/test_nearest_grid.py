@@ -5,7 +5,7 @@ import pytest
 
 from nispcodec.core.arrays import Float32Array
 from nispcodec.dataset.hard_examples import error_radii
-from nispcodec.train.backend.native.engine import NearestGrid
+from nispcodec.train.backend.native.nearest_grid import NearestGrid
 
 
 def cloud(kind: str) -> Float32Array:

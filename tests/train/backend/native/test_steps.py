@@ -1,12 +1,14 @@
 from __future__ import annotations
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 
 from nispcodec.core.arrays import Float32Array
 from tests.train.backend.native.reference import (
     CASES,
-    TorchTrainer,
+    by_torch,
     native,
     relative,
     rows,
@@ -28,13 +30,13 @@ def moved(
 ) -> tuple[float, float]:
     """How far weights and mean are from torch's after some steps, relative to how far they went."""
     chosen = rows(3000, 256, STEPS)
-    ours, torch = native(name, isa, kept), TorchTrainer(name, kept)
+    ours, torch = native(name, isa, kept), by_torch(name, kept)
     start = ours.weights
-    losses = ours.steps(chosen, np.full(STEPS, RATE, np.float32))
-    wanted = [torch.step(each, RATE) for each in chosen]
+    rates = np.full(STEPS, RATE, np.float32)
+    losses, wanted = ours.steps(chosen, rates), torch.steps(chosen, rates)
     assert losses == pytest.approx(wanted, rel=1e-5)
     weights = relative(ours.weights - start, torch.weights - start)
-    return weights, relative(ours.mean - start, torch.mean.numpy() - start)
+    return weights, relative(ours.mean - start, torch.mean - start)
 
 
 @pytest.mark.parametrize("name", CASES)
@@ -87,7 +89,7 @@ def test_steps_may_be_taken_in_any_portions(cuts: tuple[int, ...]) -> None:
     chosen, rates = rows(3000, 100, 30), np.linspace(1e-3, 1e-4, 30).astype(np.float32)
     whole, parts = native("uv"), native("uv")
     whole.steps(chosen, rates)
-    for begin, end in zip(cuts, cuts[1:], strict=False):
+    for begin, end in pairwise(cuts):
         parts.steps(chosen[begin:end], rates[begin:end])
     assert whole.weights.tobytes() == parts.weights.tobytes()
 
@@ -114,8 +116,8 @@ def test_the_first_step_of_soap_only_measures() -> None:
 
 def test_a_fit_gets_better_and_ends_where_torch_ends() -> None:
     chosen, rates = rows(3000, 500, 150), np.linspace(1e-3, 1e-5, 150).astype(np.float32)
-    ours, torch = native("sdf"), TorchTrainer("sdf")
+    ours, torch = native("sdf"), by_torch("sdf")
     losses = ours.steps(chosen, rates)
-    wanted = [torch.step(each, float(rate)) for each, rate in zip(chosen, rates, strict=True)]
+    wanted = torch.steps(chosen, rates)
     assert losses[-10:].mean() < 0.7 * losses[:10].mean()
     assert losses[-10:].mean() == pytest.approx(np.mean(wanted[-10:]), rel=0.1)

@@ -14,7 +14,7 @@ from nispcodec.train.backend.torch.engine import torch_engine
 from nispcodec.train.backend.torch.losses import LOSSES
 from nispcodec.train.config import LossConfig
 from nispcodec.train.initialization import initial_weights
-from nispcodec.train.objectives import OBJECTIVES, PaperSdfObjective
+from nispcodec.train.objectives import OBJECTIVES, Objective, PaperSdfObjective
 from nispcodec.train.task import Task
 from tests.train.fits import ENGINE, chart_task, sdf_task, uv_task
 
@@ -28,7 +28,8 @@ TASKS = {
 
 
 def test_every_objective_has_its_loss() -> None:
-    names = {kind.loss_name for kind in (*OBJECTIVES.values(), PaperSdfObjective)}
+    kinds: list[type[Objective]] = [*OBJECTIVES.values(), PaperSdfObjective]
+    names = {kind.loss_name for kind in kinds}
     assert names == set(LOSSES) == set(TASKS)
 
 
