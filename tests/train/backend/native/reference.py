@@ -113,8 +113,10 @@ class TorchTrainer:
         gradient = self.module.weights.grad
         assert gradient is not None
         gradient.mul_((SETTINGS.clip / (gradient.norm() + 1e-12)).clamp_(max=1.0))
-        for optimizer in (*self.soaps, *([self.muon] if self.muon else [])):
-            optimizer.step(rate)
+        for soap in self.soaps:
+            soap.step(rate)
+        if self.muon is not None:
+            self.muon.step(rate)
         self.module.apply_mask()
         self.mean.lerp_(self.module.weights.detach(), SETTINGS.ema_weight)
         return loss

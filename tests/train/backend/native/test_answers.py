@@ -8,7 +8,7 @@ from nispcodec.core.arrays import Float32Array
 from nispcodec.core.sample_set import SampleSet
 from tests.train.backend.native.reference import CASES, TorchTrainer, native, relative, samples
 
-COUNT = 300
+COUNT = 60
 
 
 def asked(name: str) -> SampleSet:

@@ -103,7 +103,7 @@ def test_wrong_arrays_are_refused() -> None:
     with pytest.raises(ValueError, match="weights"):
         trainer.restart(weights[:-1])
     with pytest.raises(ValueError, match="weights"):
-        trainer.outputs(weights.astype(np.float64), points, charts)  # type: ignore[arg-type]
+        trainer.outputs(weights.astype(np.float64), points, charts)
     with pytest.raises(ValueError, match="points"):
         trainer.outputs(weights, points[:, :2], charts)
     for wrong in (None, charts[:-1], charts + 40, charts - 40):

@@ -1,5 +1,7 @@
 from __future__ import annotations
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 
@@ -87,7 +89,7 @@ def test_steps_may_be_taken_in_any_portions(cuts: tuple[int, ...]) -> None:
     chosen, rates = rows(3000, 100, 30), np.linspace(1e-3, 1e-4, 30).astype(np.float32)
     whole, parts = native("uv"), native("uv")
     whole.steps(chosen, rates)
-    for begin, end in zip(cuts, cuts[1:], strict=False):
+    for begin, end in pairwise(cuts):
         parts.steps(chosen[begin:end], rates[begin:end])
     assert whole.weights.tobytes() == parts.weights.tobytes()
 
