@@ -20,17 +20,8 @@ PACKAGE = "nispcodec.train.backend.native"
 KERNEL = "nispcodec/train/backend/native/kernel"
 # -ffast-math is not wanted: kernel/vectors.h says why.
 COMPILE = [
-    "-std=c++17",
-    "-O3",
-    "-fno-math-errno",
-    "-fno-trapping-math",
-    "-ffp-contract=fast",
-    "-fvisibility=hidden",
-    "-Wall",
-    "-Wextra",
-    "-Wno-psabi",
-    "-pthread",
-    "-g0",
+    *("-std=c++17", "-O3", "-fno-math-errno", "-fno-trapping-math", "-ffp-contract=fast"),
+    *("-fvisibility=hidden", "-Wall", "-Wextra", "-Wno-psabi", "-pthread", "-g0"),
 ]
 # Name of the instruction set: floats in a vector, and what the compiler is told.
 INSTRUCTION_SETS = {
@@ -74,9 +65,8 @@ class BuildKernels(build_ext):
         except Exception as why:
             self.failure = self.failure or str(why)
         if self.failure:
-            print(
-                f"warning: training will take torch alone, as no kernel was built: {self.failure}"
-            )
+            consequence = "no kernel was built, so training takes torch"
+            sys.stdout.write(f"warning: {consequence}: {self.failure}\n")
 
     def build_extension(self, ext: Extension) -> None:
         """Build one, unless one before it failed."""
@@ -97,10 +87,6 @@ class BuildKernels(build_ext):
     def get_export_symbols(self, ext: Extension) -> list[str]:
         """None of Python's."""
         return list(ext.export_symbols)
-
-    def built(self) -> bool:
-        """Whether there is any kernel."""
-        return any(Path(self.get_ext_fullpath(ext.name)).exists() for ext in self.extensions)
 
 
 class Wheel(bdist_wheel):

@@ -186,6 +186,7 @@ _P, _I, _L, _F, _D = (
 _SIGNATURES: dict[str, tuple[Any, list[Any]]] = {
     "nisp_best_level": (_I, []),
     "nisp_vector_length": (_I, []),
+    "nisp_peak": (_L, [_L]),
     "nisp_trainer_new": (_P, [_P, _P, _P, _P]),
     "nisp_trainer_free": (None, [_P]),
     "nisp_weight_count": (_L, [_P]),

@@ -6,7 +6,7 @@ import pytest
 from nispcodec.core.sample_set import SampleSet
 from tests.train.backend.native.reference import CASES, by_torch, native, relative, samples
 
-COUNT = 300
+COUNT = 60
 
 
 def asked(name: str) -> SampleSet:

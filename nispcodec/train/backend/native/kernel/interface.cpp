@@ -9,6 +9,12 @@
 #include "nearest_grid.h"
 #include "trainer.h"
 
+#if defined(__x86_64__)
+#define NISP_IN_REGISTER(vector) "+v"(vector)
+#else
+#define NISP_IN_REGISTER(vector) "+w"(vector)
+#endif
+
 using nisp::NearestGrid;
 using nisp::Trainer;
 
@@ -57,6 +63,20 @@ EXPORTED int32_t nisp_best_level() {
 #else
     return 0;
 #endif
+}
+
+// What steps are measured against: `rounds` times PEAK_SUMS multiplications and additions of vectors
+// that nothing but the arithmetic units holds up. Returns how many of floats that were.
+EXPORTED int64_t nisp_peak(int64_t rounds) {
+    constexpr int PEAK_SUMS = 12;
+    nisp::Vector sums[PEAK_SUMS] = {}, factor = nisp::all(0.5f), term = nisp::all(1.0f);
+    for (int64_t round = 0; round < rounds; round++)
+        for (nisp::Vector& sum : sums) {
+            sum = sum * factor + term;
+            // Or the compiler would take several rounds together.
+            asm volatile("" : NISP_IN_REGISTER(sum));
+        }
+    return rounds * PEAK_SUMS * nisp::VECTOR_LENGTH;
 }
 
 EXPORTED Trainer* nisp_trainer_new(const nisp::Topology* topology, const nisp::Settings* settings,

@@ -6,19 +6,21 @@
 
 namespace nisp {
 
-// Samples that go through the network together. Their activations stay in the second-level cache.
-constexpr int TILE = 256;
+// Outputs and vectors of samples whose sums a layer keeps in registers on its way forwards; outputs
+// and inputs whose products it keeps for the gradient.
+constexpr int FORWARD_OUTPUTS = MANY_REGISTERS ? 6 : 4;
+constexpr int FORWARD_VECTORS = MANY_REGISTERS ? 4 : VECTOR_LENGTH > 4 ? 3 : 2;
+constexpr int GRADIENT_OUTPUTS = MANY_REGISTERS ? 6 : 4;
+constexpr int GRADIENT_INPUTS = MANY_REGISTERS ? 4 : 3;
+// A tile is filled up to a multiple of so many samples.
+constexpr int SAMPLES_AT_A_TIME = FORWARD_VECTORS * VECTOR_LENGTH;
+
+// Samples that go through the network together, about 256: their activations stay in the
+// second-level cache, and a quarter of a usual batch is one tile.
+constexpr int TILE = rounded_up(256, SAMPLES_AT_A_TIME);
 // A row of one number of each sample of a tile. A power of two would put all rows into few sets of
 // the cache.
 constexpr int ROW = TILE + 16;
-
-constexpr int FORWARD_OUTPUTS = MANY_REGISTERS ? 6 : VECTOR_LENGTH > 4 ? 6 : 4;
-constexpr int FORWARD_VECTORS = MANY_REGISTERS ? 4 : 2;
-constexpr int GRADIENT_OUTPUTS = MANY_REGISTERS ? 5 : 3;
-constexpr int GRADIENT_INPUTS = MANY_REGISTERS ? 5 : 4;
-// A tile is filled up to a multiple of so many samples.
-constexpr int SAMPLES_AT_A_TIME = FORWARD_VECTORS * VECTOR_LENGTH;
-static_assert(TILE % SAMPLES_AT_A_TIME == 0, "a tile is whole blocks");
 
 // A weight matrix, or its transpose: the weight from input i to output o is at
 // data[o * by_output + i * by_input].

@@ -86,10 +86,14 @@ class Muon {
     void iterate(const float* quintic) {
         const Vector first = all(quintic[0]), third = all(quintic[1]), fifth = all(quintic[2]);
         transpose(found_, found_transposed_);
-        store_product(found_, found_transposed_, square_);
-        product(square_, square_, [&](int row, int column, Vector sum) {
+        upper_product(found_, found_transposed_, [&](int row, int column, Vector sum) {
+            store(square_.row(row) + column, sum);
+        });
+        mirror(square_);
+        upper_product(square_, square_, [&](int row, int column, Vector sum) {
             store(factor_.row(row) + column, third * load(square_.row(row) + column) + fifth * sum);
         });
+        mirror(factor_);
         product(factor_, found_, [&](int row, int column, Vector sum) {
             store(next_.row(row) + column, first * load(found_.row(row) + column) + sum);
         });

@@ -48,6 +48,34 @@ inline void product(const Matrix& a, const Matrix& b, Finish finish) {
     }
 }
 
+// The same where a b is symmetric, but only from the vector that holds the diagonal on.
+template <class Finish>
+inline void upper_product(const Matrix& a, const Matrix& b, Finish finish) {
+    const int down = (a.rows + PRODUCT_ROWS - 1) / PRODUCT_ROWS;
+    for (int i = 0; i < down; i++) {
+        const int row = a.rows * i / down, rows = a.rows * (i + 1) / down - row;
+        with_constant<PRODUCT_ROWS>(rows, [&](auto ROWS) {
+            int vector = row / VECTOR_LENGTH;
+            while (vector < b.vectors()) {
+                const int vectors = std::min(PRODUCT_VECTORS, b.vectors() - vector);
+                with_constant<PRODUCT_VECTORS>(vectors, [&](auto VECTORS) {
+                    product_block<ROWS, VECTORS>(a, b, row, vector * VECTOR_LENGTH, finish);
+                });
+                vector += vectors;
+            }
+        });
+    }
+}
+
+// Copies what is above the diagonal to below.
+inline void mirror(Matrix& matrix) {
+    for (int i = 0; i < matrix.rows; i++) {
+        const float* from = matrix.row(i);
+        float* to = matrix.numbers.data() + i;
+        for (int j = i + 1; j < matrix.rows; j++) to[static_cast<size_t>(j) * matrix.stride] = from[j];
+    }
+}
+
 inline void store_product(const Matrix& a, const Matrix& b, Matrix& to) {
     product(a, b, [&](int row, int column, Vector sum) { store(to.row(row) + column, sum); });
 }

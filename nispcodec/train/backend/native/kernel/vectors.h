@@ -28,7 +28,7 @@ constexpr int MANY_REGISTERS = 1;
 constexpr int MANY_REGISTERS = 0;
 #endif
 
-inline int rounded_up(int count, int multiple) { return (count + multiple - 1) / multiple * multiple; }
+constexpr int rounded_up(int count, int multiple) { return (count + multiple - 1) / multiple * multiple; }
 
 inline Vector all(float value) { return value - Vector{}; }
 inline Integers all_integers(int32_t value) { return value - Integers{}; }
