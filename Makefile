@@ -19,14 +19,21 @@ setup: .venv/ready
 # torch first and by itself, as on Linux what pip finds may bring gigabytes of CUDA: the build for
 # processors alone is on an index of PyTorch's own, TORCH='torch==2.13.0 --index-url ...'.
 # Simplification is for the benchmarks alone, and goes without where there is no C++ compiler.
-.venv/ready: pyproject.toml constraints.txt
+.venv/ready: pyproject.toml setup.py constraints.txt
 	$(PYTHON) -m venv .venv
 	$(BIN)/pip install --disable-pip-version-check -q -c constraints.txt $(TORCH)
 	$(BIN)/pip install --disable-pip-version-check -q -c constraints.txt -e '.[all,dev,bench]'
 	-$(BIN)/pip install --disable-pip-version-check -q -c constraints.txt -e '.[simplify]'
 	touch $@
 
-demo: setup
+# Without torch, where the native trainer could be built.
+.venv/demo: pyproject.toml setup.py constraints.txt
+	$(PYTHON) -m venv .venv
+	$(BIN)/pip install --disable-pip-version-check -q -c constraints.txt -e '.[encode,render]'
+	$(BIN)/python -m nispcodec.train.backend.native || $(BIN)/pip install --disable-pip-version-check -q -c constraints.txt $(TORCH)
+	touch $@
+
+demo: .venv/demo
 	$(BIN)/nisp sample -o demo --force
 	$(BIN)/nisp encode demo/sample.obj -o demo/sample.nisp
 	$(BIN)/nisp decode demo/sample.nisp --mesh -o demo/decoded.glb --force

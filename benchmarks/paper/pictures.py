@@ -50,7 +50,7 @@ from nispcodec.train.backend.choice import choose_engine
 from nispcodec.train.config import TrainConfig
 from nispcodec.train.objectives import UvObjective
 from nispcodec.train.task import Schedule, Task
-from nispcodec.train.tasks import paper_tasks, steps_in
+from nispcodec.train.tasks import paper_tasks
 from nispcodec.train.workers import fit_networks
 
 RESULTS = Path("benchmarks/results/paper_pictures.json")
@@ -112,9 +112,9 @@ def _schedule(model: NispModel, sets: TrainingSets) -> Schedule:
     if preset == "paper":
         tasks = paper_tasks(len(model.document.charts), sets, TrainConfig())
         return next(task.schedule for task in tasks if task.name == "uv")
-    config, spec = TrainConfig(), model.document.networks["uv"].spec
+    config = TrainConfig()
     learning = config.networks["uv"]
-    steps = steps_in(config.budgets[preset].seconds * learning.time_share, spec, config)
+    steps = round(config.budgets[preset].steps * learning.step_share)
     rate, share = learning.learning_rate, learning.momentum_share
     return Schedule(steps, config.batch, rate, momentum_share=share)
 

@@ -24,13 +24,14 @@ from benchmarks.measuring.result_file import Record, as_json, write_result
 from nispcodec.core.arrays import Float32Array, Int32Array
 from nispcodec.core.network import NetworkSpec
 from nispcodec.core.sample_set import SampleSet
-from nispcodec.train.backend.native.engine import NativeTrainer, Settings, available, library
-from nispcodec.train.backend.torch.module import Module
-from nispcodec.train.backend.torch.optimizer import optimizer
-from nispcodec.train.batch import Batch
+from nispcodec.train.backend.native.library import available, library
+from nispcodec.train.backend.native.settings import Settings
+from nispcodec.train.backend.native.trainer import NativeTrainer
+from nispcodec.train.backend.torch.trainer import TorchTrainer
 from nispcodec.train.config import TrainConfig
+from nispcodec.train.initialization import initial_weights
 from nispcodec.train.objectives import OBJECTIVES
-from nispcodec.train.task import Schedule
+from nispcodec.train.task import Schedule, Task
 
 BATCH, SAMPLES, STEPS, ROUNDS = 1024, 200_000, 20, 1_000_000
 NETWORKS: dict[str, tuple[NetworkSpec, str]] = {
@@ -102,8 +103,7 @@ def native_steps(
 ) -> Callable[[], object]:
     """Steps of the kernel for an instruction set."""
     settings = Settings.of(TrainConfig(), 0.01, 1.0, 0.01)
-    first = Module(spec, "cpu").first.numpy()
-    trainer = NativeTrainer(spec, samples, loss, first, None, settings, isa=isa)
+    trainer = NativeTrainer(spec, samples, loss, initial_weights(spec), None, settings, isa=isa)
     return lambda: trainer.steps(rows, rates)
 
 
@@ -111,23 +111,10 @@ def torch_steps(
     spec: NetworkSpec, loss: str, samples: SampleSet, rows: Int32Array, rates: Float32Array
 ) -> Callable[[], object]:
     """The same steps of torch."""
-    config, module, data = TrainConfig(), Module(spec, "cpu"), Batch.of(samples, "cpu")
-    objective = OBJECTIVES[loss](config.loss)
-    step = optimizer(module, Schedule(STEPS), config)
-    mean = module.weights.detach().clone()
-
-    def run() -> None:
-        for chosen, rate in zip(rows, rates, strict=True):
-            module.weights.grad = None
-            lost = objective.loss(module, data.chosen(torch.from_numpy(chosen).long()))
-            lost.backward()  # type: ignore[no-untyped-call]
-            gradient = module.weights.grad
-            assert gradient is not None
-            gradient.mul_((config.loop.clip / gradient.norm()).clamp_(max=1.0))
-            step(float(rate))
-            mean.lerp_(module.weights.detach(), 0.01)
-
-    return run
+    objective = OBJECTIVES[loss](TrainConfig().loss)
+    task = Task(loss, spec, samples, samples, objective, Schedule(STEPS))
+    trainer = TorchTrainer(task, initial_weights(spec), None, "cpu")
+    return lambda: trainer.steps(rows, rates)
 
 
 def peak(isa: str) -> float:

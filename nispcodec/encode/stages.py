@@ -13,23 +13,25 @@ from nispcodec.train.config import TrainConfig
 
 @dataclass(frozen=True)
 class StageSeconds:
-    """Seconds on two cores for an asset of 6,000 faces, besides those that a preset fits for.
+    """Seconds on two cores for an asset of 6,000 faces.
 
     before    of the stages before the fit, in their order
     after     of what follows it
+    steps     steps of a preset's SDF in a second, the other networks beside it
     paper     of the fit of the preset `paper`
     rounding  share of a network's fit after which its weights are rounded
     """
 
     before: Mapping[str, float] = field(
         default_factory=lambda: {
-            "textures": 1.0,
-            "charts and hidden walls": 2.0,
-            "samples": 4.0,
-            "probe how much there is to learn": 5.0,
+            "textures": 0.5,
+            "charts and hidden walls": 0.7,
+            "samples": 2.0,
+            "probe how much there is to learn": 1.0,
         }
     )
     after: float = 1.0
+    steps: float = 2000.0
     paper: float = 1200.0
     rounding: float = 0.93
 
@@ -37,7 +39,9 @@ class StageSeconds:
 def with_overall(listen: Listener, config: EncodeConfig, training: TrainConfig) -> Listener:
     """A listener that passes every update on to `listen`, with `overall` set; for one encode."""
     usual = StageSeconds()
-    seconds = usual.paper if config.preset == "paper" else training.budgets[config.preset].seconds
+    seconds = usual.paper
+    if config.preset != "paper":
+        seconds = training.budgets[config.preset].steps / usual.steps
     rounds = [len(pruning.rates) for pruning in config.prunings().values()]
     searched = config.target_error is not None
     seconds *= (1 + max(rounds, default=0)) * (1 + searched)

@@ -228,8 +228,7 @@ class NetworkConfig:
     w0_scale             first frequencies, relative to SIREN's: on most of the surface UVs are all
                          but straight in x, y, z
     last_layer_lr_scale  relative rate of the last layer: the SDF's bias moves the whole field
-    time_share           of the seconds of a budget: the SDF has a core to itself, charts and UVs
-                         share the other
+    step_share           of the steps of a budget: charts and UVs share a core
     lambda_              how much a bit a weight less may raise the loss, of SDF and UVs relative to
                          what the fit is left with
     probe_hidden         widths of the probe's hidden layers
@@ -239,7 +238,7 @@ class NetworkConfig:
     momentum_share: float
     w0_scale: float
     last_layer_lr_scale: float
-    time_share: float
+    step_share: float
     lambda_: float
     probe_hidden: tuple[int, ...]
 
@@ -248,7 +247,7 @@ class NetworkConfig:
 class TrainingBudget:
     """How much a preset may spend on an asset.
 
-    seconds      of one core that the longest fit takes
+    steps        of the SDF; other networks take their share
     scale        of all widths
     minings      of hard examples at least; without them parts go missing that are a small share of
                  the area ...
@@ -257,7 +256,7 @@ class TrainingBudget:
                  the SDF is flat for most of it
     """
 
-    seconds: float
+    steps: int
     scale: float
     minings: int
     mine_every: int
@@ -304,12 +303,10 @@ class TrainConfig:
     batch        samples a step: with as long a momentum as Muon's, more and smaller steps do better
     batch_of_outputs   points that are evaluated at a time
     fine_rate    of the SDF of assets of fine detail
-    fine_time    share of the seconds of such assets: they take longer to read and to sample
+    fine_steps   share of the steps of such assets: their networks are eight times as large
     embedding    numbers a chart that the UV network sees
     affine_ridge variance below which a direction decides nothing in the first chart-affine maps
     probe_steps, probe_w0_scale   of the probes
-    step_seconds, neuron_seconds  a step on one core of 2.5 GHz takes so long, and so much more for
-                                  each hidden neuron and sample
     """
 
     loss: LossConfig = field(default_factory=LossConfig)
@@ -324,24 +321,22 @@ class TrainConfig:
     networks: Mapping[str, NetworkConfig] = field(
         default_factory=lambda: {
             "sdf": NetworkConfig(1e-3, 0.01, 1.0, 0.3, 1.0, 0.045, (24,) * 4),
-            "chart": NetworkConfig(3e-3, 0.01, 1.0, 1.0, 0.5, 0.02, (24,) * 3),
-            "uv": NetworkConfig(1e-3, 0.04, 2 / 3, 1.0, 0.47, 0.08, (24,) * 4),
+            "chart": NetworkConfig(3e-3, 0.01, 1.0, 1.0, 0.45, 0.02, (24,) * 3),
+            "uv": NetworkConfig(1e-3, 0.04, 2 / 3, 1.0, 0.7, 0.08, (24,) * 4),
         }
     )
     budgets: Mapping[str, TrainingBudget] = field(
         default_factory=lambda: {
-            "fast": TrainingBudget(18.0, 0.8, 3, 800, 0.7),
-            "balanced": TrainingBudget(100.0, 1.0, 9, 800),
-            "best": TrainingBudget(560.0, 1.2, 15, 4000),
+            "fast": TrainingBudget(9_000, 0.8, 3, 800, 0.7),
+            "balanced": TrainingBudget(40_000, 1.0, 9, 800),
+            "best": TrainingBudget(200_000, 1.2, 15, 4000),
         }
     )
     batch: int = 1024
     batch_of_outputs: int = 20_000
     fine_rate: float = 5e-4
-    fine_time: float = 0.8
+    fine_steps: float = 0.4
     embedding: int = 4
     affine_ridge: float = 1e-4
     probe_steps: int = 1500
     probe_w0_scale: float = 0.7
-    step_seconds: float = 1.1e-3
-    neuron_seconds: float = 1.2e-8

@@ -88,11 +88,11 @@ def sine_tasks(
     config = problem.config
     fine = is_fine(errors, config.sizing)
     sets = problem.sets.with_undersampled_charts() if fine else problem.sets
-    seconds = budget.seconds * (config.fine_time if fine else 1.0)
+    most = budget.steps * (config.fine_steps if fine else 1.0)
     tasks = []
     for name, spec in problem.specs(hidden).items():
         learning = config.networks[name]
-        steps = steps_in(seconds * learning.time_share, spec, config)
+        steps = max(1, round(most * learning.step_share))
         schedule = _schedule(name, steps, budget.w0_scale, config)
         if name == "sdf":
             rate = config.fine_rate if fine else learning.learning_rate
@@ -102,12 +102,6 @@ def sine_tasks(
         task = _task(sets, name, spec, schedule, config)
         tasks.append(replace(task, quantization=quantization))
     return tasks
-
-
-def steps_in(seconds: float, spec: NetworkSpec, config: TrainConfig) -> int:
-    """How many steps take so long on one core (measured; a model of two terms)."""
-    neurons = config.batch * sum(spec.hidden)
-    return max(1, round(seconds / (config.step_seconds + config.neuron_seconds * neurons)))
 
 
 def paper_tasks(charts: int, sets: TrainingSets, config: TrainConfig) -> list[Task]:

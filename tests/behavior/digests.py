@@ -67,7 +67,7 @@ def fits() -> Iterator[tuple[str, str]]:
         "mug, 4 kB": (sample_asset(), EncodeConfig(target_size=4000, textures=False)),
         "hemisphere": (soup(hemisphere()), EncodeConfig(seed=3)),
     }
-    tuning = small(6000, 0.4, 3, 50, 100)
+    tuning = small(6000, 200, 3, 50, 100)
     for name, (mesh, config) in cases.items():
         yield name, digest(pack(nispcodec.encode(mesh, config, tuning=tuning).document))
 

@@ -224,7 +224,7 @@ def without(package: str, *arguments: object) -> subprocess.CompletedProcess[str
 @pytest.mark.parametrize(
     ("package", "named", "arguments"),
     [
-        ("torch", "torch", ("encode", "ball.obj", "-o", "o.nisp")),
+        ("torch", "torch", ("encode", "ball.obj", "-o", "o.nisp", "--engine", "torch")),
         ("igl", "libigl", ("compare", "ball.obj", "ball.obj")),
         ("embreex", "embreex", ("sheet", "ball.obj", "ball.obj", "-o", "o.png", "--size", 32)),
         ("xatlas", "xatlas", ("decode", "tiny.nisp", "-o", "o.glb", "--rebake", 16)),
@@ -242,7 +242,7 @@ def test_a_missing_package_is_one_sentence(
 
 REQUIRED = [
     "numpy>=2.0",
-    'torch>=2.4; extra == "encode"',
+    'torch>=2.4; extra == "torch"',
     "libigl>=2.6; extra == 'encode'",
     "libigl>=2.6; extra == 'render'",
     'scikit-image>=0.24; extra == "render"',
@@ -256,7 +256,7 @@ REQUIRED = [
 @pytest.mark.parametrize(
     ("package", "command", "said"),
     [
-        ("torch", "encode", "torch, which is not installed: pip install 'nispcodec[encode]'"),
+        ("torch", "encode", "torch, which is not installed: pip install 'nispcodec[torch]'"),
         ("igl", "encode", "libigl, which is not installed: pip install 'nispcodec[encode]'"),
         ("igl", "compare", "libigl, which is not installed: pip install 'nispcodec[render]'"),
         (

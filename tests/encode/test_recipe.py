@@ -21,7 +21,7 @@ from tests.encode.tunings import small
 from tests.geometry.shapes import box_asset, cube, soup
 
 pytestmark = pytest.mark.slow
-SHORT = small(3000, 0.2, 1, 100, 30, lambda_=1e-6)
+SHORT = small(3000, 60, 1, 100, 30, lambda_=1e-6)
 
 
 def encode(

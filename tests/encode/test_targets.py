@@ -56,7 +56,7 @@ def by_law(tasks: list[Task], listen: Listener) -> Networks:
 
 
 def fitting(fit: Fit = by_law, listen: Listener = silent) -> FitContext:
-    return FitContext(problem(), TrainingBudget(2.0, 0.5, 1, 100), fit, listen)
+    return FitContext(problem(), TrainingBudget(900, 0.5, 1, 100), fit, listen)
 
 
 def document(networks: Mapping[str, Network]) -> Document:

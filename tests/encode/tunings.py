@@ -7,22 +7,28 @@ from dataclasses import replace
 
 from nispcodec.dataset.config import SamplingConfig
 from nispcodec.encode.config import Tuning
-from nispcodec.train.config import LoopConfig, PaperConfig, TrainConfig, TrainingBudget
+from nispcodec.train.config import (
+    LoopConfig,
+    PaperConfig,
+    QuantizeConfig,
+    TrainConfig,
+    TrainingBudget,
+)
 
 COUNTS = ("near", "tight", "cube", "wide", "near_surface", "texture", "held_out", "paper", "thin")
 
 
 def small(
     samples: int,
-    seconds: float,
+    steps: int,
     minings: int,
     mine_every: int,
     probe_steps: int,
     lambda_: float = 0,
 ) -> Tuning:
-    """Few samples of each kind, so many seconds for every preset; lambda of all networks."""
+    """Few samples of each kind, so many steps for every preset; lambda of all networks."""
     default = TrainConfig()
-    budget = TrainingBudget(seconds, 0.6, minings, mine_every)
+    budget = TrainingBudget(steps, 0.6, minings, mine_every)
     networks = {
         name: replace(each, lambda_=lambda_ or each.lambda_)
         for name, each in default.networks.items()
@@ -31,6 +37,7 @@ def small(
         budgets=dict.fromkeys(default.budgets, budget),
         networks=networks,
         probe_steps=probe_steps,
+        quantize=QuantizeConfig(derivatives=2_000_000, least_samples=1000),
         # So short a fit is useless, and that is no error here.
         loop=LoopConfig(useless=math.inf),
         paper=PaperConfig(steps=60),

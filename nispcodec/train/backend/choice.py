@@ -20,14 +20,14 @@ def choose_engine(wanted: str, device: str, published: bool, listen: Listener) -
     NispError when torch is needed and not installed.
     """
     if wanted == "torch" or published or device.startswith("cuda"):
-        return _torch(device, "preset paper" if published else "this engine or device")
+        return _torch(device)
     try:
         return NativeEngine()
     except NativeError as error:
         if wanted == "native":
             raise FitError(f"engine native: {error}") from error
         try:
-            engine = _torch(device, "encoding without the native engine")
+            engine = _torch(device)
         except NispError as missing:
             raise NispError(f"{missing}; the native engine: {error}") from error
         note = f"warning: trains with torch, which takes several times as long: {error}"
@@ -35,8 +35,8 @@ def choose_engine(wanted: str, device: str, published: bool, listen: Listener) -
         return engine
 
 
-def _torch(device: str, what_for: str) -> Engine:
-    require("torch", extra="torch", what_for=what_for)
+def _torch(device: str) -> Engine:
+    require("torch", extra="torch", what_for="training with torch")
     from nispcodec.train.backend.torch.engine import torch_engine
 
     return torch_engine(device)

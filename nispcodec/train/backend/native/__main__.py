@@ -1,0 +1,12 @@
+"""`python -m nispcodec.train.backend.native`: exits with 1, and says why, where there is no kernel."""
+
+from __future__ import annotations
+
+import sys
+
+from nispcodec.train.backend.native.library import NativeError, library
+
+try:
+    library()
+except NativeError as why:
+    sys.exit(f"no native trainer: {why}; training takes torch")
