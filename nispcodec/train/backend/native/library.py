@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ctypes
+import platform
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cache
@@ -137,7 +138,7 @@ def _loading(failures: list[str]) -> Iterator[Library]:
 
 def _candidates(failures: list[str]) -> list[str]:
     """What the processor runs, the best first; the simplest kernel tells."""
-    if not _path(LEVELS[0]).exists():
+    if platform.machine() in ("arm64", "aarch64"):
         return [OTHER]
     try:
         level = int(_load(LEVELS[0]).functions.nisp_best_level())
