@@ -30,7 +30,7 @@ class StageSeconds:
             "probe how much there is to learn": 1.0,
         }
     )
-    after: float = 1.0
+    after: float = 0.3
     steps: float = 2000.0
     paper: float = 1200.0
     rounding: float = 0.93

@@ -35,7 +35,7 @@ class Objective(ABC):
 
     @abstractmethod
     def loss(self, outputs: Float32Array, samples: SampleSet) -> float:
-        """What training minimizes."""
+        """The number that training minimizes."""
 
     @abstractmethod
     def error(self, outputs: Float32Array, samples: SampleSet) -> float:

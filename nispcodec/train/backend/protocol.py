@@ -1,4 +1,4 @@
-"""What a training backend does: the arithmetic of a fit, and nothing of its course."""
+"""A training backend: the arithmetic of a fit, and nothing of its course."""
 
 from __future__ import annotations
 

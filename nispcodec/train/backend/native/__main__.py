@@ -1,4 +1,4 @@
-"""`python -m nispcodec.train.backend.native`: exits with 1, and says why, where there is no kernel."""
+"""`python -m nispcodec.train.backend.native` exits with 1, and says why, without a kernel."""
 
 from __future__ import annotations
 

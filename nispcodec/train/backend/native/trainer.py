@@ -106,6 +106,7 @@ class NativeTrainer:
 
     @threads.setter
     def threads(self, threads: int) -> None:
+        """1 to 256. Raises ValueError for others, NativeError where there are not so many."""
         if not 1 <= threads <= 256:
             raise ValueError(f"threads: expected 1 to 256, found {threads}")
         with self._lock:
@@ -153,7 +154,7 @@ class NativeTrainer:
     def outputs(
         self, weights: Float32Array, points: Float32Array, charts: IntArray | None = None
     ) -> Float32Array:
-        """What the network says (n, outputs) with `weights` of points (n, 3) of charts (n,).
+        """The network's answers (n, outputs) with `weights` at points (n, 3) of charts (n,).
 
         Raises ValueError for arrays of another size or kind, or charts that it has not.
         """

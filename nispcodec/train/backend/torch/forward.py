@@ -1,4 +1,4 @@
-"""What a network answers, in torch: `nispcodec.infer.evaluate` with gradients."""
+"""A network's answers in torch: `nispcodec.infer.evaluate` with gradients."""
 
 from __future__ import annotations
 

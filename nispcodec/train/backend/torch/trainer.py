@@ -26,6 +26,8 @@ class TorchTrainer:
     def __init__(
         self, task: Task, weights: Float32Array, kept: Float32Array | None, device: str
     ) -> None:
+        # The fit's thread has a count of its own; operations this small wait for more than one.
+        torch.set_num_threads(1)
         self._task, self._device = task, device
         self._forward = Forward(WeightLayout(task.spec), device)
         self._loss = LOSSES[task.objective.loss_name]
