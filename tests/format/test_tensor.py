@@ -1,0 +1,57 @@
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from hypothesis.extra import numpy as hnp
+
+from nispcodec.core.initial_weights import BITS, initial_integers, predicted
+from nispcodec.core.network import MAX_ROW_SHIFT
+from nispcodec.format.constants import MAX_SYMBOL
+from nispcodec.format.tensor import Tensor
+
+SHAPES = st.tuples(st.integers(1, 5), st.integers(1, 6))
+
+
+def tensor(symbols: Any, step: float | None = 0.5) -> Tensor:
+    matrix = np.array(symbols, np.int32)
+    return Tensor("uv", step, matrix, initial_integers(3, 0, matrix.size).reshape(matrix.shape))
+
+
+@given(hnp.arrays(np.int32, SHAPES, elements=st.integers(-MAX_SYMBOL, MAX_SYMBOL)))
+def test_row_shifts_are_the_largest_that_lose_nothing(matrix: np.ndarray[Any, Any]) -> None:
+    found = tensor(matrix)
+    shifts = found.row_shifts
+    assert (shifts.shape, shifts.min() >= 0) == ((len(matrix),), True)
+    np.testing.assert_array_equal(found.values(shifts, delta=False) << shifts[:, None], matrix)
+    for row, shift in zip(matrix.tolist(), shifts.tolist(), strict=True):
+        assert shift == MAX_ROW_SHIFT or any(symbol % (2 << shift) for symbol in row)
+
+
+@pytest.mark.parametrize("scale", [0, 1, 900, MAX_SYMBOL])
+def test_symbols_that_are_still_the_initial_weights_leave_nothing_to_say(scale: int) -> None:
+    initial = initial_integers(3, 0, 60).reshape(6, 10)
+    found = Tensor("uv", 0.5, predicted(initial, scale, np.zeros(1, int)).astype("i4"), initial)
+    assert found.init_scale == pytest.approx(scale, abs=1)
+    assert np.abs(found.values(np.zeros(6, np.int64), delta=True)).max() <= 1
+
+
+@given(hnp.arrays(np.int32, SHAPES, elements=st.integers(-MAX_SYMBOL, MAX_SYMBOL)))
+def test_what_is_left_of_a_prediction_is_a_symbol(matrix: np.ndarray[Any, Any]) -> None:
+    found = tensor(matrix)
+    shifts = found.row_shifts
+    assert 0 <= found.init_scale <= MAX_SYMBOL
+    rest = found.values(shifts, delta=True)
+    assert np.abs(rest).max() <= MAX_SYMBOL
+    back = rest + predicted(found.initial, found.init_scale, shifts[:, None]) << shifts[:, None]
+    np.testing.assert_array_equal(back, matrix)
+
+
+def test_weights_that_are_not_quantized_stay() -> None:
+    weights = np.array([[0.5, -2.0]], np.float32)
+    found = Tensor("uv", None, weights, np.full((1, 2), 1 << BITS - 1))
+    assert (found.init_scale, found.row_shifts.tolist()) == (0, [0])
+    assert found.values(found.row_shifts, delta=True) is weights
