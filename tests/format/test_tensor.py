@@ -55,3 +55,10 @@ def test_weights_that_are_not_quantized_stay() -> None:
     found = Tensor("uv", None, weights, np.full((1, 2), 1 << BITS - 1))
     assert (found.init_scale, found.row_shifts.tolist()) == (0, [0])
     assert found.values(found.row_shifts, delta=True) is weights
+
+
+def test_a_tensor_that_began_at_zero_is_not_predicted() -> None:
+    """As the one bias of a network may, for some seeds: nothing to divide by."""
+    found = Tensor("sdf.bias.1", 0.5, np.array([[3]], np.int32), np.zeros((1, 1), np.int64))
+    assert found.init_scale == 0
+    np.testing.assert_array_equal(found.values(np.zeros(1, np.int64), delta=True), [[3]])
