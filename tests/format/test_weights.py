@@ -7,6 +7,8 @@ from hypothesis import given, settings
 from nispcodec.core.errors import FormatError
 from nispcodec.core.network import Network, NetworkSpec
 from nispcodec.format import weights
+from nispcodec.format.codings import rans
+from nispcodec.format.codings.frequency_model import FrequencyModel
 from nispcodec.format.codings.registry import CODINGS
 from tests.format.documents import network, networks, quantized
 
@@ -62,3 +64,14 @@ def test_too_many_weights_are_refused_before_any_is_read() -> None:
     both = dict.fromkeys(("sdf", "uv"), Network(large, tensors))
     with pytest.raises(FormatError, match=f"weights: expected at most 1048576, found {2 * one}"):
         weights.encode(both, None)
+
+
+def test_a_stream_of_less_than_a_bit_is_accounted_for() -> None:
+    """All weights in one record, all zero, under a model that expects as much."""
+    spec = NetworkSpec((1,), 1)
+    model = FrequencyModel(0, 0, 255)
+    start, end = model.starts(1)[1:3].tolist()
+    record = bytes([6 | 1 << 3 | 3 << 6, 100, 1]) + model.encode()
+    stream = rans.encode([start] * spec.weight_count, [end - start] * spec.weight_count)
+    _, lengths = weights.decode({"sdf": spec}, record + stream)
+    assert lengths == {"sdf": len(record) + len(stream)}
