@@ -62,3 +62,11 @@ def test_a_tensor_that_began_at_zero_is_not_predicted() -> None:
     found = Tensor("sdf.bias.1", 0.5, np.array([[3]], np.int32), np.zeros((1, 1), np.int64))
     assert found.init_scale == 0
     np.testing.assert_array_equal(found.values(np.zeros(1, np.int64), delta=True), [[3]])
+
+
+def test_a_prediction_that_leads_too_far_is_none() -> None:
+    """The best scale for both would take the second beyond the largest symbol."""
+    initial = np.array([[9, -1]]) * (1 << BITS) // 10
+    symbols = np.full((1, 2), MAX_SYMBOL, np.int32)
+    assert Tensor("uv", 0.5, symbols, initial).init_scale == 0
+    assert Tensor("uv", 0.5, symbols // 2, initial).init_scale > 0

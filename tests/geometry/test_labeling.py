@@ -75,9 +75,9 @@ def test_used_uvs_fill_the_unit_square(scale: float, shift: float) -> None:
     np.testing.assert_allclose(uvs.max(axis=0), 1)
 
 
-@pytest.mark.parametrize(("filled", "same"), [(0.9, True), (0.99, False)])
+@pytest.mark.parametrize(("filled", "same"), [(0.94, True), (0.96, False)])
 def test_an_atlas_that_is_filled_enough_needs_no_map(filled: float, same: bool) -> None:
-    """The box fills 0.95 of its atlas in the worse direction."""
+    """The box fills 0.967 of its atlas in u and 0.95 in v."""
     offset, scale = table_of(box_asset(), filled)
     assert (offset.tolist() == [0, 0] and scale.tolist() == [1, 1]) == same
 

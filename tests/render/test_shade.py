@@ -71,6 +71,8 @@ def test_metal_shines_in_its_own_color_and_plastic_in_that_of_the_lamp() -> None
     metal, plastic = (light(base=red, metallic=m, roughness=0.2) for m in (1, 0))
     assert metal[0] > 10 > metal[1] == metal[2] == 0
     assert plastic[1] == plastic[2] > 0.5
+    # Metal does nothing but mirror.
+    np.testing.assert_allclose(light(-UP, base=red, metallic=1), ENVIRONMENT * np.array(red))
 
 
 @pytest.mark.parametrize("roughness", [0.3, 0.6, 1.0])
