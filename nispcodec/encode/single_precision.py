@@ -11,13 +11,13 @@ from nispcodec.core.document import ChartTable, Frame
 
 
 def short_frame(frame: Frame, negligible: float) -> Frame:
-    """Float32 where that moves no point by more than this share of the radius: half the bytes."""
+    """Numbers in float32 that move by no more than this share of the radius: half the bytes."""
     x, y, z, radius = _single([*frame.center, frame.radius], negligible * frame.radius)
     return Frame((x, y, z), radius)
 
 
 def short_uv_map(table: ChartTable, negligible: float) -> ChartTable:
-    """The map to the asset's UV, as `short_frame`."""
+    """The map to the asset's UV, as `short_frame`; the share is that of the smaller scale."""
     limit = negligible * min(table.uv_scale)
     u, v = _single(table.uv_offset, limit)
     scale_u, scale_v = _single(table.uv_scale, limit)

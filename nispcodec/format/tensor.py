@@ -31,7 +31,7 @@ class Tensor:
     @cached_property
     def init_scale(self) -> int:
         """The scale with which initial weights predict symbols best; 0 where they do not."""
-        if self.step is None:
+        if self.step is None or not self.initial.any():
             return 0
         shares = self.initial / (1 << BITS)
         fitted = float((self.matrix * shares).sum() / (shares * shares).sum())

@@ -67,7 +67,7 @@ def decode(
         bits.append(sum(cost for _, cost in values))
         flat = [each for each, _ in values]
         networks[name] = _network(reader, name, spec, read[name], flat)
-    stream = (reader.position - ends[-1]) * np.cumsum(bits) / max(sum(bits), 1)
+    stream = (reader.position - ends[-1]) * np.cumsum(bits) / (sum(bits) or 1)
     lengths = np.diff(ends) + np.diff(np.rint(stream).astype(int))
     return networks, dict(zip(specs, map(int, lengths), strict=True))
 
