@@ -13,7 +13,7 @@ from nispcodec.dataset.config import SamplingConfig
 from nispcodec.dataset.texture_gradient import texture_gradient
 from nispcodec.geometry.analysis import Analysis
 from nispcodec.geometry.openings import spread_over
-from nispcodec.geometry.solid import area, normals
+from nispcodec.geometry.solid import area
 from nispcodec.geometry.surface_points import (
     laplace_offsets,
     points_on,
@@ -69,7 +69,7 @@ class Sampler:
         """
         depth, solid = self.config.thin_depth, self.analysis.solid
         surface, piece = solid_surface(self._random, solid, count)
-        behind = surface - depth * normals(solid.pieces[piece])
+        behind = surface - depth * solid.normals[piece]
         surface = surface[self.analysis.field.closest(behind).sdf > -depth / 4]
         again = surface.repeat(min(times, count // max(len(surface), 1)), axis=0)
         again += self._random.normal(scale=depth / 2, size=again.shape)

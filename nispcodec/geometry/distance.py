@@ -9,7 +9,7 @@ import numpy as np
 
 from nispcodec.core.arrays import BoolArray, Float64Array, Int64Array
 from nispcodec.geometry.config import SolidConfig
-from nispcodec.geometry.solid import Solid, normals
+from nispcodec.geometry.solid import Solid
 from nispcodec.geometry.z_order import z_order
 
 
@@ -38,7 +38,7 @@ class DistanceField:
     def __init__(self, solid: Solid, sheet_lift: float = SolidConfig.sheet_lift) -> None:
         self.solid = solid
         self._walls = _Tree(solid.pieces, solid.wall)
-        lifted = solid.pieces + sheet_lift * normals(solid.pieces)[:, None]
+        lifted = solid.pieces + sheet_lift * solid.normals[:, None]
         self._sheets = _Tree(lifted, solid.open_surface)
 
     def closest(self, points: Float64Array, signed: bool = True) -> Closest:

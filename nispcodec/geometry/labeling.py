@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -72,4 +72,14 @@ def chart_table(mesh: TexturedMesh, charts: Charts, filled: float) -> ChartTable
         charts.has_uv,
         uv_offset=(float(low[0]), float(low[1])),
         uv_scale=(float(scale[0]), float(scale[1])),
+    )
+
+
+def with_openings(table: ChartTable) -> ChartTable:
+    """The table with one chart more, that of the openings."""
+    return replace(
+        table,
+        materials=np.append(table.materials, np.int32(0)),
+        has_uv=np.append(table.has_uv, False),
+        openings=True,
     )

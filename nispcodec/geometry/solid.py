@@ -14,9 +14,9 @@ import igl
 import numpy as np
 
 from nispcodec.core.arrays import BoolArray, Float64Array, Int64Array, IntArray
-from nispcodec.core.connectivity import connected_faces, row_ids
 from nispcodec.core.errors import MeshError
 from nispcodec.geometry.config import SolidConfig
+from nispcodec.geometry.welding import Welding
 from nispcodec.geometry.z_order import z_order
 
 TINY = np.finfo(np.float64).tiny
@@ -28,6 +28,7 @@ class Solid:
 
     pieces         (p, 3, 3) float64: the outer faces and open surfaces, large ones subdivided
     parents        (p,) int: the mesh face that each piece is part of
+    normals        (p, 3) float64: unit normals; 0 for degenerate pieces
     open_surface   (p,) bool: pieces that get a thickness
     wall           (p,) bool: pieces with an inside; an open surface that is one too is one side of
                    a double-sided sheet
@@ -38,6 +39,7 @@ class Solid:
 
     pieces: Float64Array
     parents: Int64Array
+    normals: Float64Array
     open_surface: BoolArray
     wall: BoolArray
     winding: Winding
@@ -46,13 +48,15 @@ class Solid:
     open_surface_share: float
 
 
-def build_solid(corners: Float64Array, config: SolidConfig = SolidConfig()) -> Solid:
+def build_solid(
+    corners: Float64Array, welding: Welding, config: SolidConfig = SolidConfig()
+) -> Solid:
     """Sort the faces of a mesh by what a signed distance can hold.
 
-    corners (m, 3, 3): every face's corners, normalized frame. Raises MeshError when no face can be
-    seen from outside.
+    corners (m, 3, 3): every face's corners, normalized frame; `welding` is that of the mesh.
+    Raises MeshError when no face can be seen from outside.
     """
-    free = _free_bodies(corners, config)
+    free = _free_bodies(corners, welding, config)
     bodies = corners[~free]
     winding = Winding(bodies, config.winding_accuracy)
     pieces, parents, kind = _classify(winding, bodies, np.flatnonzero(~free), config)
@@ -66,6 +70,7 @@ def build_solid(corners: Float64Array, config: SolidConfig = SolidConfig()) -> S
     return Solid(
         pieces=all_pieces,
         parents=np.concatenate([parents[~hidden], np.flatnonzero(free)]),
+        normals=normals(all_pieces),
         open_surface=open_surface,
         wall=kinds != _OPEN,
         winding=winding,
@@ -173,12 +178,11 @@ def _point_kind(
     return np.select([doubtful, inside], [_OPEN, _HIDDEN], _OUTER)
 
 
-def _free_bodies(corners: Float64Array, config: SolidConfig) -> BoolArray:
+def _free_bodies(corners: Float64Array, welding: Welding, config: SolidConfig) -> BoolArray:
     """Faces (m,) of bodies that enclose nothing, whatever the winding number says."""
-    vertices = row_ids(corners.reshape(-1, 3)).reshape(-1, 3)
-    body = connected_faces(vertices)
+    body = welding.bodies
     size = np.maximum(np.bincount(body, weights=area(corners)), TINY)
-    opening, center, owner = _openings(corners, vertices, body)
+    opening, center, owner = _openings(corners, welding)
     exposed = _exposed(corners, center, config)
     open_area = np.bincount(owner[exposed], weights=opening[exposed], minlength=len(size))
     is_open = open_area / size > config.open_share
@@ -232,19 +236,12 @@ def _gap(corners: Float64Array, points: Float64Array) -> Float64Array:
 
 
 def _openings(
-    corners: Float64Array, vertices: Int64Array, body: IntArray
+    corners: Float64Array, welding: Welding
 ) -> tuple[Float64Array, Float64Array, IntArray]:
-    """Fan triangles that close every boundary loop: their areas, centers and bodies."""
-    start = vertices.reshape(-1)
-    end = np.roll(vertices, -1, axis=1).reshape(-1)
-    low, high = np.minimum(start, end), np.maximum(start, end)
-    _, edge = np.unique(low * (int(vertices.max()) + 1) + high, return_inverse=True)
-    balance = np.bincount(edge.reshape(-1), weights=np.where(start < end, 1, -1))
-    boundary = np.flatnonzero(balance[edge.reshape(-1)] != 0)
-    first = corners.reshape(-1, 3)[boundary]
-    second = np.roll(corners, -1, axis=1).reshape(-1, 3)[boundary]
-    owner = np.repeat(body, 3)[boundary]
-    loop = connected_faces(np.stack([start, end, start], axis=1)[boundary]) if len(first) else owner
+    """Fan triangles that close every loop of the rim: their areas, centers and bodies."""
+    first = corners.reshape(-1, 3)[welding.rim]
+    second = np.roll(corners, -1, axis=1).reshape(-1, 3)[welding.rim]
+    owner, loop = np.repeat(welding.bodies, 3)[welding.rim], welding.loops
     size = np.maximum(np.bincount(loop), 1)[:, None] if len(loop) else np.ones((1, 1))
     middle = np.stack([np.bincount(loop, weights=first[:, a]) for a in range(3)], axis=1) / size
     fan = np.stack([first, second, middle[loop]], axis=1)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from nispcodec.core.arrays import Float64Array, Int64Array
-from nispcodec.geometry.solid import Solid, area, normals
+from nispcodec.geometry.solid import Solid, area
 
 TINY = np.finfo(np.float64).tiny
 
@@ -71,7 +71,7 @@ def raised(
     thick = np.flatnonzero(solid.open_surface[piece])
     on = piece[thick]
     side = np.where(solid.wall[on] | (random.random(len(on)) < 0.5), 1.0, -1.0)
-    points[thick] += (solid.half_thickness * side)[:, None] * normals(solid.pieces[on])
+    points[thick] += (solid.half_thickness * side)[:, None] * solid.normals[on]
     return points
 
 
