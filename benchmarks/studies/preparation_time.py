@@ -101,14 +101,17 @@ def _prepared(times: Seconds, analysis: Any, mesh: object) -> Any:
 
 
 def _differing(label: Any, points: Path) -> dict[str, dict[str, float]]:
-    """By set the shares of labels that differ; signs only where some are negative."""
+    """By set the shares of labels that differ; charts and UVs are learned without signs."""
     stored, found = np.load(points), {}
     for name in ("distance", "charts", "uvs", "held_out_distance", "held_out_surface"):
         here = {part: stored[f"{name}.{part}"] for part in ("points", "sdf", "chart", "uv")}
-        there = label(here["points"].astype(np.float64), bool((here["sdf"] < 0).any()))
+        there = label(here["points"].astype(np.float64), "distance" in name)
         ours = here["chart"] < len(label.charts)  # not on openings
         found[name] = {
-            "sign": float(((here["sdf"] < 0) != (there.sdf < 0)).mean()),
+            "sign": float(
+                ((here["sdf"] < -1e-6) & (there.sdf > 1e-6)).mean()
+                + ((here["sdf"] > 1e-6) & (there.sdf < -1e-6)).mean()
+            ),
             "distance": float((np.abs(np.abs(here["sdf"]) - np.abs(there.sdf)) > 1e-5).mean()),
             "chart": float((here["chart"] != there.chart)[ours].mean()),
             "uv": float((np.abs(here["uv"] - there.uv).max(axis=1) > 1e-3)[ours].mean()),

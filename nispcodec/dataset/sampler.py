@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -48,6 +49,28 @@ class Sampler:
         """
         surface, _ = solid_surface(self._random, self.analysis.solid, count)
         return self._label(self._beside(surface, spread), signed)
+
+    def near_and_nearer(
+        self, count: int, spread: float, nearer: Sequence[tuple[int, float]]
+    ) -> tuple[SampleSet, ...]:
+        """`near_surface`, signed, and further sets without signs, at its distance queries alone.
+
+        `nearer` has the count and spread of each. They lie on the ways from the same points to the
+        surface, each at its share of the way: sets for networks of different kinds.
+        """
+        field = self.analysis.field
+        most = max(count, *(other for other, _ in nearer))
+        surface, _ = solid_surface(self._random, self.analysis.solid, most)
+        points = self._beside(surface, spread)
+        signed, unsigned = field.both(points)
+        found = [self._label.of(points[:count], signed[:count])]
+        for other, narrow in nearer:
+            if narrow > spread:
+                found.append(self.near_surface(other, narrow, signed=False))
+                continue
+            moved, closest = field.nearer(points[:other], unsigned[:other], narrow / spread)
+            found.append(self._label.of(moved, closest))
+        return tuple(found)
 
     def undersampled_charts(self, least: int, count: int, spread: float) -> SampleSet:
         """Samples beside patches that would get fewer than `least` of `count`: what they lack."""

@@ -71,7 +71,7 @@ def analyze(
     corners = frame.to_normalized(mesh.corners)
     welding = welded(mesh)
     solid = build_solid(corners, welding, config.solid)
-    field = DistanceField(solid, config.solid.sheet_lift)
+    field = DistanceField(solid, config.solid)
     patches = split_charts(mesh, welding)
     if config.merging:
         patches = split_self_seams(mesh.corners, welding, patches)

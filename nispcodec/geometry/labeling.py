@@ -37,7 +37,10 @@ class Labeling:
 
         Without `signed` all of space counts as outside, which saves most of the time.
         """
-        closest = self.field.closest(points, signed)
+        return self.of(points, self.field.closest(points, signed))
+
+    def of(self, points: Float64Array, closest: Closest) -> SampleSet:
+        """The labels of points (n, 3) of which is known what is closest."""
         face = self.field.solid.parents[closest.piece]
         return SampleSet(
             points=points.astype(np.float32),

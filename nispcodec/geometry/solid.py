@@ -16,8 +16,9 @@ import numpy as np
 from nispcodec.core.arrays import BoolArray, Float64Array, Int64Array, IntArray
 from nispcodec.core.errors import MeshError
 from nispcodec.geometry.config import SolidConfig
+from nispcodec.geometry.reach import reach_of, rim_points, shared_corners
 from nispcodec.geometry.welding import Welding
-from nispcodec.geometry.z_order import z_order
+from nispcodec.geometry.winding import Winding
 
 TINY = np.finfo(np.float64).tiny
 
@@ -33,6 +34,9 @@ class Solid:
     wall           (p,) bool: pieces with an inside; an open surface that is one too is one side of
                    a double-sided sheet
     winding        winding number of the closed or nearly closed bodies: beyond 1/2 is inside
+    inside_front   (p,) bool: pieces whose front is inside (inverted bodies)
+    reach          (p,) float64: points whose closest piece this is are on the side that it shows
+                   them if they are nearer than this; 0 where that is not known
     half_thickness given to open surfaces, normalized frame
     hidden_share, open_surface_share: shares of the mesh's area
     """
@@ -43,6 +47,8 @@ class Solid:
     open_surface: BoolArray
     wall: BoolArray
     winding: Winding
+    inside_front: BoolArray
+    reach: Float64Array
     half_thickness: float
     hidden_share: float
     open_surface_share: float
@@ -58,9 +64,14 @@ def build_solid(
     """
     free = _free_bodies(corners, welding, config)
     bodies = corners[~free]
-    winding = Winding(bodies, config.winding_accuracy)
-    pieces, parents, kind = _classify(winding, bodies, np.flatnonzero(~free), config)
+    winding = Winding(bodies, config.winding_accuracy, config.rough_accuracy, config.rough_margin)
+    pieces, parents, kind, front, whole = _classify(winding, bodies, np.flatnonzero(~free), config)
     hidden = kind == _HIDDEN
+    gaps = shared_corners(pieces, hidden)
+    rim = rim_points(corners, welding.rim[~free[welding.rim // 3]], config.rim_step)
+    whole &= ~hidden & (kind == _OUTER)
+    reach = np.zeros(len(pieces))
+    reach[whole] = reach_of(pieces[whole], gaps, rim, config.gap_margin)
     total = area(corners).sum()
     all_pieces = np.concatenate([pieces[~hidden], corners[free]])
     if not len(all_pieces):
@@ -74,6 +85,8 @@ def build_solid(
         open_surface=open_surface,
         wall=kinds != _OPEN,
         winding=winding,
+        inside_front=np.concatenate([np.abs(front[~hidden]) > 0.5, np.zeros(free.sum(), bool)]),
+        reach=np.concatenate([reach[~hidden], np.zeros(free.sum())]),
         half_thickness=config.half_thickness,
         hidden_share=float(area(pieces[hidden]).sum() / total),
         open_surface_share=float(area(all_pieces[open_surface]).sum() / total),
@@ -93,89 +106,81 @@ def normals(triangles: Float64Array) -> Float64Array:
     return np.divide(cross, length, out=np.zeros_like(cross), where=length > 0)
 
 
-class Winding:
-    """Generalized winding number of a triangle soup (m, 3, 3), by libigl.
-
-    Fast winding numbers (Barill et al. 2018): `accuracy` is how many radii away a cluster of
-    triangles is taken as one.
-    """
-
-    def __init__(self, bodies: Float64Array, accuracy: float) -> None:
-        self._accuracy = accuracy
-        self._tree = igl.FastWindingNumberBVH()
-        self._empty = not len(bodies)
-        if not self._empty:
-            faces = np.arange(3 * len(bodies), dtype=np.int64).reshape(-1, 3)
-            self._tree.init(np.ascontiguousarray(bodies.reshape(-1, 3)), faces)
-
-    def at(self, points: Float64Array) -> Float64Array:
-        """The winding number (n,) at points (n, 3); 0 everywhere for a soup of no triangles."""
-        if self._empty or not len(points):
-            return np.zeros(len(points))
-        order = z_order(points)
-        number = np.empty(len(points))
-        number[order] = self._tree.winding_number(points[order], self._accuracy)
-        return number
-
-
 _OUTER, _HIDDEN, _OPEN, _THIN, _MIXED = range(5)
 
 
 def _classify(
     winding: Winding, bodies: Float64Array, parents: Int64Array, config: SolidConfig
-) -> tuple[Float64Array, Int64Array, Int64Array]:
-    """Subdivide the faces until each piece is of one kind: pieces, their parents, their kinds."""
-    done: list[tuple[Float64Array, Int64Array, Int64Array]] = []
+) -> tuple[Float64Array, Int64Array, Int64Array, Float64Array, BoolArray]:
+    """Subdivide the faces until each piece is of one kind.
+
+    Pieces, their parents, their kinds, the winding numbers in front of them, and whether those in
+    front and behind are whole ones, as where nothing else is near.
+    """
+    done: list[tuple[Float64Array, Int64Array, Int64Array, Float64Array]] = []
     todo, todo_parents = bodies, parents
     while len(todo):
         longest = _longest_edge(todo)
         fine = longest <= config.fine_edge
-        kind = _kind(winding, todo, fine, config)
+        kind, front = _kind(winding, todo, fine, config)
         split = (longest > config.coarse_edge) | (kind == _MIXED)
         kind = np.where(kind == _MIXED, _OUTER, kind)
         keep = ~split | fine
-        done.append((todo[keep], todo_parents[keep], kind[keep]))
+        done.append((todo[keep], todo_parents[keep], kind[keep], front[keep]))
         todo, todo_parents = _subdivide(todo[~keep]), np.repeat(todo_parents[~keep], 4)
-    pieces, owners, kinds = zip(*done, strict=True) if done else ((bodies,), (parents,), (parents,))
-    everything, kind = np.concatenate(pieces), np.concatenate(kinds)
-    kind[_thin(winding, everything, config.thin_wall) & (kind == _OUTER)] = _THIN
-    return everything, np.concatenate(owners), kind
+    if not done:
+        return bodies, parents, parents, np.zeros(0), np.zeros(0, dtype=bool)
+    pieces, owners, kind, front = (np.concatenate(each) for each in zip(*done, strict=True))
+    outer = np.flatnonzero(kind == _OUTER)
+    thin, behind = _thin(winding, pieces[outer], config.thin_wall)
+    kind[outer[thin]] = _THIN
+    whole = np.zeros(len(pieces), dtype=bool)
+    off = np.abs(front[outer] - np.round(front[outer]))
+    whole[outer] = (off < config.whole) & (np.abs(behind - front[outer] - 1) < config.whole)
+    return pieces, owners, kind, front, whole
 
 
-def _thin(winding: Winding, pieces: Float64Array, depth: float) -> BoolArray:
-    """Which pieces (p,) have the outside in front and, `depth` away, behind them as well."""
+def _thin(winding: Winding, pieces: Float64Array, depth: float) -> tuple[BoolArray, Float64Array]:
+    """Which pieces (p,) have the outside in front and, `depth` away, behind them as well.
+
+    And the winding numbers (p,) behind them.
+    """
     center, step = pieces.mean(axis=1), depth * normals(pieces)
-    thin: BoolArray = np.abs(winding.at(center - step)) <= 0.5
-    thin[thin] = np.abs(winding.at((center + step)[thin])) <= 0.5
-    return thin
+    behind = winding.about(center - step)
+    thin: BoolArray = np.abs(behind) <= 0.5
+    thin[thin] = np.abs(winding.about((center + step)[thin])) <= 0.5
+    return thin, behind
 
 
 def _kind(
     winding: Winding, pieces: Float64Array, single: BoolArray, config: SolidConfig
-) -> Int64Array:
-    """Kind of each piece from its centroid, and for all but the small ones from its corners too."""
-    kind = _point_kind(winding, pieces, np.full(3, 1 / 3), config)
+) -> tuple[Int64Array, Float64Array]:
+    """Kind of each piece from its centroid, and for all but the small ones from its corners too.
+
+    And the winding number in front of the centroid.
+    """
+    kind, front = _point_kind(winding, pieces, np.full(3, 1 / 3), config)
     large = np.flatnonzero(~single)
     for corner in range(3):
         weights = np.full(3, 0.05)
         weights[corner] = 0.9
-        other = _point_kind(winding, pieces[large], weights, config)
+        other, _ = _point_kind(winding, pieces[large], weights, config)
         kind[large] = np.where(other == kind[large], other, _MIXED)
-    return kind
+    return kind, front
 
 
 def _point_kind(
     winding: Winding, pieces: Float64Array, weights: Float64Array, config: SolidConfig
-) -> Int64Array:
+) -> tuple[Int64Array, Float64Array]:
     """Across a face the winding number falls by one, so one look in front is enough.
 
     Not quite by one across an open surface, whose rim shows: hence the doubtful band.
     """
     points = np.einsum("c,ncx->nx", weights, pieces) + config.probe_offset * normals(pieces)
-    front = winding.at(points)
+    front = winding.about(points)
     doubtful = np.abs(front + 0.5) < config.doubt
     inside = (np.abs(front) > 0.5) & (np.abs(front + 1) > 0.5)
-    return np.select([doubtful, inside], [_OPEN, _HIDDEN], _OUTER)
+    return np.select([doubtful, inside], [_OPEN, _HIDDEN], _OUTER), front
 
 
 def _free_bodies(corners: Float64Array, welding: Welding, config: SolidConfig) -> BoolArray:
