@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from scipy.spatial import cKDTree
 
-from nispcodec.core.arrays import Float64Array, Int64Array
+from nispcodec.core.arrays import Float64Array, Int32Array, Int64Array
 from nispcodec.core.asset import TexturedMesh
 from nispcodec.core.document import ChartTable
 from nispcodec.core.sample_set import SampleSet
@@ -29,20 +29,20 @@ def chart_error_weight(
     if len(np.unique(samples.chart)) < 2:
         return weight
     rows, near = _at_borders(samples, count)
-    seen, place = np.unique(np.concatenate([rows, near.ravel()]), return_inverse=True)
-    colors = _colors(mesh, table, samples[seen])
-    here, there = np.split(place.ravel(), [len(rows)])
-    own = colors[here]
+    seen = np.zeros(len(samples), dtype=bool)
+    seen[rows] = seen[near] = True
+    colors, place = _colors(mesh, table, samples[seen]), np.cumsum(seen) - 1
+    own = colors[place[rows]]
     total = np.zeros(len(rows))
-    for other, number in zip(near.T, there.reshape(near.shape).T, strict=True):
-        apart = colors[number] - own
+    for other in near.T:
+        apart = colors[place[other]] - own
         off = np.sqrt(np.einsum("nc,nc->n", apart, apart) / apart.shape[1])
         total += off * (samples.chart[other] != samples.chart[rows])
     weight[rows] = total / count
     return weight
 
 
-def _at_borders(samples: SampleSet, count: int) -> tuple[Int64Array, Int64Array]:
+def _at_borders(samples: SampleSet, count: int) -> tuple[Int64Array, Int32Array]:
     """Samples (k,) with another chart among the `count` nearest, and these (k, count).
 
     Asked block by block in the order of space: thrice as fast, in little memory.
@@ -56,7 +56,7 @@ def _at_borders(samples: SampleSet, count: int) -> tuple[Int64Array, Int64Array]
         near = tree.query(points[block], list(range(1, count + 1)), workers=-1)[1]
         mixed = np.flatnonzero((charts[near] != charts[block, None]).any(axis=1))
         rows.append(order[start + mixed])
-        nearest.append(order[near[mixed]])
+        nearest.append(order[near[mixed]].astype(np.int32))
     return np.concatenate(rows), np.concatenate(nearest)
 
 

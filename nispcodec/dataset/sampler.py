@@ -25,6 +25,7 @@ from nispcodec.geometry.surface_points import (
 from nispcodec.geometry.symmetry import asymmetric_samples
 
 TINY = np.finfo(np.float64).tiny
+BLOCK = 1 << 16
 
 
 class Sampler:
@@ -58,19 +59,35 @@ class Sampler:
         `nearer` has the count and spread of each. They lie on the ways from the same points to the
         surface, each at its share of the way: sets for networks of different kinds.
         """
-        field = self.analysis.field
-        most = max(count, *(other for other, _ in nearer))
+        wanted = [(count, spread), *nearer]
+        most = max(number for number, wide in wanted if wide <= spread)
         surface, _ = solid_surface(self._random, self.analysis.solid, most)
         points = self._beside(surface, spread)
+        found: list[list[SampleSet]] = [[] for _ in wanted]
+        for number, (other, wide) in enumerate(wanted):
+            if wide > spread:
+                found[number].append(self.near_surface(other, wide, signed=False))
+        for start in range(0, len(points), BLOCK):
+            self._add_block(found, points[start : start + BLOCK], start, wanted)
+        return tuple(SampleSet.joined(tuple(each)) for each in found)
+
+    def _add_block(
+        self,
+        found: list[list[SampleSet]],
+        points: Float64Array,
+        start: int,
+        wanted: Sequence[tuple[int, float]],
+    ) -> None:
+        """Label points (n, 3), the first of them number `start`, for all sets that want them."""
+        field, spread = self.analysis.field, wanted[0][1]
         signed, unsigned = field.both(points)
-        found = [self._label.of(points[:count], signed[:count])]
-        for other, narrow in nearer:
-            if narrow > spread:
-                found.append(self.near_surface(other, narrow, signed=False))
-                continue
-            moved, closest = field.nearer(points[:other], unsigned[:other], narrow / spread)
-            found.append(self._label.of(moved, closest))
-        return tuple(found)
+        for number, (count, wide) in enumerate(wanted):
+            used = slice(max(count - start, 0))
+            if number == 0:
+                found[number].append(self._label.of(points[used], signed[used]))
+            elif wide <= spread:
+                moved, closest = field.nearer(points[used], unsigned[used], wide / spread)
+                found[number].append(self._label.of(moved, closest))
 
     def undersampled_charts(self, least: int, count: int, spread: float) -> SampleSet:
         """Samples beside patches that would get fewer than `least` of `count`: what they lack."""
