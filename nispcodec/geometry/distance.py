@@ -57,7 +57,7 @@ class DistanceField:
         return self._ordered(points, (signed,))[0]
 
     def both(self, points: Float64Array) -> tuple[Closest, Closest]:
-        """What is closest to points (n, 3) with signs, and without, for hardly more than one."""
+        """`closest` of points (n, 3) with signs, and without, for hardly more than one of them."""
         signed, unsigned = self._ordered(points, (True, False))
         return signed, unsigned
 

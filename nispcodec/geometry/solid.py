@@ -9,6 +9,7 @@ as do walls too thin for one (double-sided sheets: two faces back to back).
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial
 
 import igl
 import numpy as np
@@ -18,7 +19,7 @@ from nispcodec.core.errors import MeshError
 from nispcodec.geometry.config import SolidConfig
 from nispcodec.geometry.reach import reach_of, rim_points, shared_corners
 from nispcodec.geometry.welding import Welding
-from nispcodec.geometry.winding import Winding
+from nispcodec.geometry.z_order import in_space_order
 
 TINY = np.finfo(np.float64).tiny
 
@@ -67,29 +68,30 @@ def build_solid(
     winding = Winding(bodies, config.winding_accuracy, config.rough_accuracy, config.rough_margin)
     pieces, parents, kind, front, whole = _classify(winding, bodies, np.flatnonzero(~free), config)
     hidden = kind == _HIDDEN
-    gaps = shared_corners(pieces, hidden)
-    rim = rim_points(corners, welding.rim[~free[welding.rim // 3]], config.rim_step)
-    whole &= ~hidden & (kind == _OUTER)
-    reach = np.zeros(len(pieces))
-    reach[whole] = reach_of(pieces[whole], gaps, rim, config.gap_margin)
-    total = area(corners).sum()
+    total, hidden_area = area(corners).sum(), area(pieces[hidden]).sum()
     all_pieces = np.concatenate([pieces[~hidden], corners[free]])
     if not len(all_pieces):
         raise MeshError(f"expected faces to be seen from outside, found {len(corners)} hidden ones")
     kinds = np.concatenate([kind[~hidden], np.full(free.sum(), _OPEN)])
     open_surface = kinds != _OUTER
+    open_area, front_of = area(all_pieces[open_surface]).sum(), normals(all_pieces)
+    gaps = shared_corners(pieces, hidden)
+    rim = rim_points(corners, welding.rim[~free[welding.rim // 3]], config.rim_step)
+    whole &= kind == _OUTER
+    reach = np.zeros(len(pieces))
+    reach[whole] = reach_of(pieces[whole], gaps, rim, config.gap_margin)
     return Solid(
         pieces=all_pieces,
         parents=np.concatenate([parents[~hidden], np.flatnonzero(free)]),
-        normals=normals(all_pieces),
+        normals=front_of,
         open_surface=open_surface,
         wall=kinds != _OPEN,
         winding=winding,
         inside_front=np.concatenate([np.abs(front[~hidden]) > 0.5, np.zeros(free.sum(), bool)]),
         reach=np.concatenate([reach[~hidden], np.zeros(free.sum())]),
         half_thickness=config.half_thickness,
-        hidden_share=float(area(pieces[hidden]).sum() / total),
-        open_surface_share=float(area(all_pieces[open_surface]).sum() / total),
+        hidden_share=float(hidden_area / total),
+        open_surface_share=float(open_area / total),
     )
 
 
@@ -104,6 +106,46 @@ def normals(triangles: Float64Array) -> Float64Array:
     cross = _cross(triangles)
     length = np.linalg.norm(cross, axis=1, keepdims=True)
     return np.divide(cross, length, out=np.zeros_like(cross), where=length > 0)
+
+
+class Winding:
+    """Generalized winding number of a triangle soup (m, 3, 3), by libigl.
+
+    Fast winding numbers (Barill et al. 2018): `accuracy` is how many radii away a cluster of
+    triangles is taken as one, `rough` and `margin` how many are enough where that is clear.
+    """
+
+    def __init__(
+        self, bodies: Float64Array, accuracy: float, rough: float = 0.0, margin: float = 0.0
+    ) -> None:
+        self._accuracy, self._rough, self._margin = accuracy, rough or accuracy, margin
+        self._tree = igl.FastWindingNumberBVH()
+        self._empty = not len(bodies)
+        if not self._empty:
+            faces = np.arange(3 * len(bodies), dtype=np.int64).reshape(-1, 3)
+            self._tree.init(np.ascontiguousarray(bodies.reshape(-1, 3)), faces)
+
+    def at(self, points: Float64Array) -> Float64Array:
+        """The winding number (n,) at points (n, 3); 0 everywhere for a soup of no triangles."""
+        if self._empty or not len(points):
+            return np.zeros(len(points))
+        return in_space_order(partial(self._asked, self._accuracy), points)
+
+    def about(self, points: Float64Array) -> Float64Array:
+        """The same, only roughly except near a half, one and a half and so on: which side it is."""
+        if self._empty or not len(points):
+            return np.zeros(len(points))
+        return in_space_order(self._about, points)
+
+    def _about(self, points: Float64Array) -> Float64Array:
+        number = self._asked(self._rough, points)
+        unclear = np.flatnonzero(np.abs(number - np.floor(number) - 0.5) < self._margin)
+        number[unclear] = self._asked(self._accuracy, points[unclear])
+        return number
+
+    def _asked(self, accuracy: float, points: Float64Array) -> Float64Array:
+        number: Float64Array = self._tree.winding_number(points, accuracy)
+        return number
 
 
 _OUTER, _HIDDEN, _OPEN, _THIN, _MIXED = range(5)
