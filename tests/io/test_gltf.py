@@ -362,8 +362,6 @@ def broken(change: str) -> bytes:
         "children": lambda: gltf.json["nodes"][0].update(children="all"),
         "scene": lambda: gltf.json.update(scene=3),
         "matrix": lambda: gltf.json["nodes"][0].update(matrix=[1, 2, 3]),
-        "image": lambda: gltf.json["images"][0].update(bufferView=1),
-        "base64": lambda: gltf.json["images"][0].update(uri="data:;base64,a"),
         "alpha": lambda: gltf.json["materials"][0].update(alphaMode="FOG"),
         "wrap": lambda: [gltf.json.update(samplers=[{"wrapS": 1}]),
                          gltf.json["textures"][0].update(sampler=0)],
@@ -398,8 +396,6 @@ def broken(change: str) -> bytes:
         ("children", "expected node indices in children"),
         ("scene", "scenes: expected an index below 1, found 3"),
         ("matrix", "nodes[0].matrix: expected 16 numbers"),
-        ("image", "images[0]"),
-        ("base64", "images[0]: expected base64"),
         ("alpha", "expected an alphaMode"),
         ("wrap", "expected wraps of"),
     ],
@@ -409,6 +405,23 @@ def test_errors_name_the_place(change: str, expected: str) -> None:
         read_gltf(broken(change), "a.glb", NOWHERE)
     assert str(caught.value).startswith("a.glb: ")
     assert expected in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("spoilt", "said"),
+    [
+        ({"bufferView": 1}, "images[0] (image_0): expected an image that can be decoded"),
+        ({"bufferView": 99}, "bufferViews: expected an index below"),
+        ({"uri": "data:;base64,a"}, "images[0]: expected base64"),
+    ],
+)
+def test_an_unreadable_image_is_left_out(tmp_path: Path, spoilt: dict[str, Any], said: str) -> None:
+    gltf = textured()
+    gltf.json["images"][0] = spoilt
+    mesh = gltf.load(tmp_path)
+    assert mesh.materials[0].maps == {}
+    assert mesh.has_uv.all()
+    assert said in mesh.warnings[0]
 
 
 @pytest.mark.parametrize(

@@ -11,6 +11,7 @@ import numpy as np
 
 from nispcodec.core.arrays import Float64Array
 from nispcodec.core.asset import Material, TextureMap
+from nispcodec.core.errors import MeshError
 from nispcodec.core.slots import BY_NAME, SLOT_TABLE
 from nispcodec.io.folder import Folder
 from nispcodec.io.images import TextureShelf
@@ -67,7 +68,7 @@ class GltfMaterials:
     def use(self, index: int | None) -> tuple[int, UvSource]:
         """The number of material `index` of the file, None being the default one, and its UVs.
 
-        Raises MeshError for a malformed material or an image that does not decode.
+        Raises MeshError for a malformed material.
         """
         if index not in self._made:
             self._made[index] = self._make(index)
@@ -130,16 +131,22 @@ class GltfMaterials:
     def _image(self, index: int) -> int | None:
         image = self._root.entry("images", index)
         uri = image.text("uri", "")
-        if uri:
-            data = read_uri(uri, self._folder, image.place)
-        else:
-            data = bytes(self._buffers.view(image.integer("bufferView")))
+        try:
+            data = self._image_bytes(image, uri)
+        except MeshError as why:
+            self._warnings.append(f"{why}: image left out")
+            return None
         shown = "" if uri.startswith("data:") else unquote(uri)
         name = shown or image.text("name", "") or f"image_{index}"
         if data is None:
             self._warnings.append(f"{image.place}: image {name!r} not found")
             return None
         return self.shelf.add(name, data, f"{image.place} ({name})")
+
+    def _image_bytes(self, image: Element, uri: str) -> bytes | None:
+        if uri:
+            return read_uri(uri, self._folder, image.place)
+        return bytes(self._buffers.view(image.integer("bufferView")))
 
     def _sampling(self, texture: Element) -> tuple[tuple[str, str], str]:
         index = texture.optional("sampler")

@@ -28,7 +28,7 @@ def read_obj(data: bytes, name: str, folder: Folder) -> TexturedMesh:
     """Parse an OBJ file, and the MTL files and images that it names in `folder`.
 
     Faces may come before the vertices they use. Raises MeshError, naming the file `name` and the
-    line, for coordinates and indices that make no sense and for images that do not decode.
+    line, for positions and indices that make no sense.
     """
     statements = _Statements(name)
     statements.parse(data)

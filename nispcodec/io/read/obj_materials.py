@@ -202,8 +202,12 @@ class MaterialReader:
         if path is None:
             self._warn(statement, "image not found")
             return None
-        data = self._folder.read(path)
-        if "bump" in keyword and is_gray(data, str(path)):
+        try:
+            data = folder.read(path)
+        except MeshError as why:
+            self._warn(statement, f"{why}: left out")
+            return None
+        if "bump" in keyword and is_gray(data):
             self._warn(statement, "a gray height map, not a normal map: left out")
             return None
         self._warn_of_options(statement)

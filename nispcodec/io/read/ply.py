@@ -5,7 +5,7 @@ from __future__ import annotations
 import struct
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
-from pathlib import PurePath
+from pathlib import Path, PurePath
 
 import numpy as np
 
@@ -187,12 +187,20 @@ def _materials(
     materials = []
     for file in files:
         path = folder.find(file)
-        texture = None if path is None else shelf.add(path.name, folder.read(path), str(path))
+        texture = None if path is None else _image(path, folder, shelf, warnings)
         maps = {} if texture is None else {"base_color": TextureMap(texture)}
         materials.append(Material(name=PurePath(file).stem or "material", maps=maps))
         if path is None:
             warnings.append(f"{name}: image {file!r} not found")
     return tuple(materials) or (Material(),), tuple(shelf.textures)
+
+
+def _image(path: Path, folder: Folder, shelf: TextureShelf, warnings: list[str]) -> int | None:
+    try:
+        return shelf.add(path.name, folder.read(path), str(path))
+    except MeshError as why:
+        warnings.append(f"{why}: left out")
+        return None
 
 
 def _assembled(

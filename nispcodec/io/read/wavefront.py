@@ -54,7 +54,7 @@ def rest(line: bytes, skipped: int = 1) -> str:
 
 
 def names(line: bytes, skipped: int = 1) -> tuple[str, ...]:
-    """What a line may name after its first `skipped` words, the likeliest first.
+    """The names that a line may hold after its first `skipped` words, the likeliest first.
 
     All the text with its spaces; then without what may be a comment, from each "#" on.
     """
