@@ -15,7 +15,7 @@ _NAMING = re.compile(
 )
 # What C libraries write for what is no finite number, which Python reads in part.
 _NOT_FINITE = re.compile(rb"[+-]?(?:nan(?:\(\w*\))?|inf(?:inity)?|1\.#\w+)", re.IGNORECASE)
-_BYTE_ORDER_MARK = b"\xef\xbb\xbf"
+BYTE_ORDER_MARK = b"\xef\xbb\xbf"
 
 
 def logical_lines(data: bytes) -> Iterator[tuple[int, bytes]]:
@@ -24,7 +24,7 @@ def logical_lines(data: bytes) -> Iterator[tuple[int, bytes]]:
     A line that was continued has the number of its first part. A statement that ends in a name
     keeps what follows "#": whether that is a comment only `names` can tell.
     """
-    data = data.removeprefix(_BYTE_ORDER_MARK).replace(b"\r\n", b"\n").replace(b"\r", b"\n")
+    data = data.removeprefix(BYTE_ORDER_MARK).replace(b"\r\n", b"\n").replace(b"\r", b"\n")
     parts: list[bytes] = []
     for number, raw in enumerate([*data.split(b"\n"), b""], 1):
         commented = b"#" in raw and not _NAMING.match(raw)
