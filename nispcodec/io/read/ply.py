@@ -232,7 +232,7 @@ def _read_row(element: Element, queue: _Text | _Binary) -> None:
 def _materials(
     header: Header, name: str, folder: Folder, warnings: list[str]
 ) -> tuple[tuple[Material, ...], tuple[Texture, ...]]:
-    """One material a texture file, or a plain one."""
+    """One material a texture file."""
     shelf = TextureShelf(warnings)
     files = header.textures or header.likely_textures
     materials = []
@@ -243,7 +243,7 @@ def _materials(
         materials.append(Material(name=PurePath(file).stem or "material", maps=maps))
         if path is None:
             warnings.append(f"{name}: image {file!r} not found")
-    return tuple(materials) or (Material(),), tuple(shelf.textures)
+    return tuple(materials), tuple(shelf.textures)
 
 
 def _image(path: Path, folder: Folder, shelf: TextureShelf, warnings: list[str]) -> int | None:
@@ -268,6 +268,8 @@ def _assembled(
     corners = _flat_indices(polygons, len(positions), name)
     uvs, corner_uvs = _uvs(vertex, face, corners, sizes, name)
     numbers = _face_materials(face, len(sizes), len(materials), name)
+    if not materials or (numbers == len(materials)).any():
+        materials = (*materials, Material())
     whole = sizes >= 3
     if not whole.all():
         warnings.append(f"{name}: left out {(~whole).sum()} face(s) of fewer than three corners")
@@ -358,11 +360,11 @@ def _corner_uvs(
 
 
 def _face_materials(face: Element, faces: int, materials: int, name: str) -> Int64Array:
-    """MeshLab numbers the textures; -1, no texture, counts as the first."""
+    """MeshLab numbers the textures; -1 is none. A file without textures has material 0."""
     numbers = face.columns.get("texnumber")
     if numbers is None:
         return np.zeros(faces, dtype=np.int64)
-    chosen = np.maximum(np.array(numbers, dtype=np.float64), 0)
-    if not (chosen < materials).all():
+    chosen = np.array(numbers, dtype=np.float64)
+    if not (chosen < max(materials, 1)).all():
         raise MeshError(f"{name}: expected texnumbers below {materials}, found {chosen.max():g}")
-    return chosen.astype(np.int64)
+    return np.where(chosen < 0, materials, chosen).astype(np.int64)
