@@ -313,6 +313,15 @@ def test_factors_that_are_not_finite_are_left_out(tmp_path: Path) -> None:
     assert "metallicFactor, emissiveFactor no finite numbers" in mesh.warnings[0]
 
 
+@pytest.mark.parametrize("name", ["a\tb", "a\x7fb", "a\ud800b"])
+def test_names_that_are_no_text_become_some(tmp_path: Path, name: str) -> None:
+    gltf = textured()
+    gltf.json["materials"][0]["name"] = name
+    mesh = gltf.load(tmp_path)
+    assert mesh.materials[0].name == "a_b"
+    assert mesh.warnings[0].endswith("control characters in its name became '_'")
+
+
 def test_instances_by_extension(tmp_path: Path) -> None:
     gltf = one_triangle(translation=[0, 0, 5])
     half = math.sqrt(0.5)

@@ -259,6 +259,14 @@ def test_accents_are_composed_either_way(tmp_path: Path, composed_in_mtl: bool) 
     assert len(load(tmp_path, f"map_Kd {written.lower()}\n").textures) == 1
 
 
+def test_a_tab_in_a_name(tmp_path: Path) -> None:
+    mesh = load_obj(
+        tmp_path, OBJ.replace("usemtl m", "usemtl m\tn"), a_mtl="newmtl m\tn\nKd 1 0 0\n"
+    )
+    assert mesh.materials[0].name == "m_n"
+    assert mesh.materials[0].base_color[:3] == (1.0, 0.0, 0.0)
+
+
 def test_materials_without_any_library_are_named(tmp_path: Path) -> None:
     mesh = load_obj(tmp_path, TRIANGLE + "usemtl a\nf 1 2 3\nusemtl b\nf 3 2 1\n")
     assert mesh.warnings == ("materials 'a', 'b' are in no material file",)

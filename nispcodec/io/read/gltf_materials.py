@@ -17,6 +17,7 @@ from nispcodec.io.folder import Folder
 from nispcodec.io.images import TextureShelf
 from nispcodec.io.read.gltf_buffers import Buffers, read_uri
 from nispcodec.io.read.gltf_json import Element
+from nispcodec.io.read.names import material_name
 
 _WRAPS = {10497: "repeat", 33071: "clamp", 33648: "mirror"}
 _FILTERS = {9728: "nearest", 9729: "linear"}
@@ -93,7 +94,7 @@ class GltfMaterials:
         infos, uvs = self._of_one_source(dict(_texture_infos(source, glossy)), source)
         factors = _glossy_factors(glossy) if glossy else _metallic_factors(source)
         material = Material(
-            name=source.text("name", "") or f"material_{index}",
+            name=material_name(source.text("name", ""), self._warnings) or f"material_{index}",
             base_color=factors[0],
             metallic=factors[1],
             roughness=factors[2],

@@ -16,6 +16,7 @@ from nispcodec.io.folder import Folder
 from nispcodec.io.images import TextureShelf, is_gray
 from nispcodec.io.read import wavefront
 from nispcodec.io.read.mtl import MapStatement, MtlMaterial, is_number, parse_mtl
+from nispcodec.io.read.names import material_name
 
 # Keyword of an image statement -> slot; of two for one slot the first in this list wins.
 SLOT_OF = {keyword: slot.name for slot in SLOT_TABLE for keyword in slot.mtl_read}
@@ -139,7 +140,7 @@ class MaterialReader:
 
     def _material(self, name: str) -> Material:
         if name not in self._known:
-            return Material(name=name or "material")
+            return Material(name=material_name(name, self._warnings) or "material")
         return self._finished(self._known[name])
 
     def _finished(self, found: MtlMaterial) -> Material:
@@ -157,7 +158,7 @@ class MaterialReader:
         if "emissive" in maps and glow == (0.0, 0.0, 0.0):
             glow = (1.0, 1.0, 1.0)
         return Material(
-            name=found.name,
+            name=material_name(found.name, self._warnings),
             base_color=(red, green, blue, alpha),
             metallic=_unit(found.values.get("pm", [0.0])[0]),
             roughness=_unit(found.values.get("pr", [1.0])[0]),

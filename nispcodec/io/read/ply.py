@@ -17,6 +17,7 @@ from nispcodec.io.folder import Folder
 from nispcodec.io.images import TextureShelf
 from nispcodec.io.read import wavefront
 from nispcodec.io.read.coordinates import without_unusable
+from nispcodec.io.read.names import material_name
 from nispcodec.io.read.polygons import triangulate
 
 _TYPES = {
@@ -240,7 +241,8 @@ def _materials(
         path = folder.find(file)
         texture = None if path is None else _image(path, folder, shelf, warnings)
         maps = {} if texture is None else {"base_color": TextureMap(texture)}
-        materials.append(Material(name=PurePath(file).stem or "material", maps=maps))
+        stem = material_name(PurePath(file).stem, warnings)
+        materials.append(Material(name=stem or "material", maps=maps))
         if path is None:
             warnings.append(f"{name}: image {file!r} not found")
     return tuple(materials), tuple(shelf.textures)
