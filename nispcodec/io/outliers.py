@@ -11,7 +11,6 @@ from nispcodec.core.asset import TexturedMesh
 
 # Faces that say what is common.
 MOST = 10_000
-TINY = np.finfo(np.float64).tiny
 
 
 @dataclass(frozen=True)
@@ -64,8 +63,9 @@ def _far(values: Float64Array, corners: Float64Array, limits: Limits) -> tuple[i
     if not len(values):
         return 0, 1.0
     step = slice(None, None, -(-len(values) // MOST))
-    centers, areas = values[step].mean(axis=1), _areas(corners[step])
-    low, high = np.array([_middle(each, areas, limits.few) for each in centers.T]).T
+    some, areas, half = values[step], _areas(corners[step]), limits.few / 2
+    low = np.array([_quantile(each, areas, half) for each in some.min(axis=1).T])
+    high = np.array([_quantile(each, areas, 1 - half) for each in some.max(axis=1).T])
     extent = max(float((high - low).max()), limits.least)
     whole = max(float(each.max() - each.min()) for each in values.reshape(-1, values.shape[2]).T)
     if whole <= limits.far * extent:
@@ -73,7 +73,7 @@ def _far(values: Float64Array, corners: Float64Array, limits: Limits) -> tuple[i
     off = (values < low - extent) | (values > high + extent)
     far, areas = np.asarray(off.any(axis=(1, 2))), _areas(corners)
     is_few = areas[far].sum() <= limits.few * areas.sum()
-    return int(far.sum()) if is_few else 0, whole / max(extent, TINY)
+    return (int(far.sum()), whole / extent) if is_few and extent > 0 else (0, 1.0)
 
 
 def _areas(corners: Float64Array) -> Float64Array:
@@ -82,9 +82,9 @@ def _areas(corners: Float64Array) -> Float64Array:
     return areas
 
 
-def _middle(values: Float64Array, weights: Float64Array, few: float) -> tuple[float, float]:
-    """The values between which all but `few` of the weight lies."""
+def _quantile(values: Float64Array, weights: Float64Array, share: float) -> float:
+    """The value below which `share` of the weight lies."""
     order = np.argsort(values)
-    shares = np.cumsum(weights[order])
-    first, last = np.searchsorted(shares, np.array([few / 2, 1 - few / 2]) * shares[-1])
-    return float(values[order[first]]), float(values[order[min(last, len(order) - 1)]])
+    reached = np.cumsum(weights[order])
+    place = int(np.searchsorted(reached, share * reached[-1]))
+    return float(values[order[min(place, len(order) - 1)]])

@@ -44,6 +44,22 @@ def test_uvs_far_from_the_others_are_named() -> None:
     assert warning.startswith("texture coordinates of 1 face(s) lie far from the others")
 
 
+def test_few_large_faces_and_a_far_speck() -> None:
+    mesh = with_speck(0.001, 50, 0.5)
+    two = replace(
+        mesh,
+        positions=np.vstack([mesh.positions, [[0, 0, 0], [1, 0, 0], [1, 1, 0]]]),
+        faces=np.vstack([np.arange(3) + len(mesh.positions), mesh.faces[-1]]).astype(np.int32),
+        uv_faces=np.full((2, 3), -1, np.int32),
+        face_materials=np.zeros(2, np.int32),
+    )
+    assert "1 face(s) lie far from the others" in with_outliers_named(two).warnings[0]
+    alone = replace(
+        two, faces=two.faces[:1], uv_faces=two.uv_faces[:1], face_materials=two.face_materials[:1]
+    )
+    assert with_outliers_named(alone).warnings == ()
+
+
 def test_what_is_near_or_large_is_no_outlier() -> None:
     for mesh in (grid(), with_speck(0.01, 2, 5), with_speck(1, 1000, 0.5)):
         assert with_outliers_named(mesh).warnings == ()
