@@ -113,7 +113,7 @@ def _files(mesh: TexturedMesh, path: Path, colors: Float32Array | None) -> dict[
     if suffix not in WRITERS:
         found = repr(path.suffix) if path.suffix else "none"
         raise MeshError(f"{path}: expected a suffix of {', '.join(SUFFIXES)}, found {found}")
-    if _CONTROL.search(path.name):
+    if "\0" in str(path) or _CONTROL.search(path.name):
         raise MeshError(f"{str(path)!r}: expected a name without control characters")
     files = WRITERS[suffix](mesh, path.stem, colors)
     files[path.name] = files.pop(f"{path.stem}{suffix}")

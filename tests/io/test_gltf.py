@@ -345,6 +345,11 @@ def test_too_many_instances_are_refused_before_memory_is_taken(tmp_path: Path) -
     del gltf.json["accessors"][zeros]["bufferView"]
     attributes = {"SCALE": zeros}
     gltf.json["nodes"][0]["extensions"] = {"EXT_mesh_gpu_instancing": {"attributes": attributes}}
+    with pytest.raises(MeshError, match="at most 100000 instances"):
+        gltf.load(tmp_path)
+    gltf.json["accessors"][zeros].update(count=100_000)
+    many = {"bufferView": gltf.view(bytes(12 * 300)), "componentType": 5126}
+    gltf.json["accessors"][0].update(count=300, **many)
     with pytest.raises(MeshError, match="at most 20000000 faces and vertices in all"):
         gltf.load(tmp_path)
 

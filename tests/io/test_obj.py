@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+import tracemalloc
 from pathlib import Path
 
 import numpy as np
@@ -178,3 +179,13 @@ def test_a_face_with_unusable_uvs_has_none(tmp_path: Path, vt: str) -> None:
     assert mesh.has_uv.tolist() == [False, True]
     assert mesh.corner_uvs[1].tolist() == [[0, 1], [1, 0], [0, 0]]
     assert "a.obj: texture coordinates of 1 face(s) are no finite numbers" in mesh.warnings[0]
+
+
+@pytest.mark.parametrize("names", [" #" * 100_000, " " * 200_000 + "x", "x " * 100_000])
+def test_absurd_names_take_neither_memory_nor_time(tmp_path: Path, names: str) -> None:
+    text = f"mtllib {names}\nusemtl {names}\n" + TRIANGLE + "f 1 2 3\n"
+    tracemalloc.start()
+    load_obj(tmp_path, text)
+    _, peak = tracemalloc.get_traced_memory()
+    tracemalloc.stop()
+    assert peak < 20 * len(text) + 1_000_000

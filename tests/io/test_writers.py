@@ -313,9 +313,12 @@ def test_names_that_are_no_text_are_kept_as_bytes(
     assert len(again.faces) == 4
 
 
-def test_a_name_of_several_lines_is_refused(mesh: TexturedMesh, tmp_path: Path) -> None:
-    with pytest.raises(MeshError, match="without control characters"):
-        write_mesh(mesh, tmp_path / "a\nusemtl b.obj")
+def test_names_that_no_line_or_file_system_holds_are_refused(
+    mesh: TexturedMesh, tmp_path: Path
+) -> None:
+    for name in ("a\nusemtl b.obj", "a\0b/c.glb"):
+        with pytest.raises(MeshError, match="without control characters"):
+            write_mesh(mesh, tmp_path / name)
     assert not list(tmp_path.iterdir())
 
 

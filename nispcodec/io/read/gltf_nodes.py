@@ -13,6 +13,8 @@ from nispcodec.io.read.gltf_json import Element
 
 _INSTANCING = "EXT_mesh_gpu_instancing"
 _VISIBILITY = "KHR_node_visibility"
+# A count costs a file nothing.
+MOST_INSTANCES = 100_000
 
 
 @dataclass(frozen=True)
@@ -63,12 +65,12 @@ def _shown(root: Element, buffers: Buffers, world: _Worlds, node: Element, index
     if node.get("skin") is not None:
         # A skin replaces the transform of its node.
         skin = root.entry("skins", node.integer("skin"))
-        return Shown(mesh, np.eye(4)[None], _joint_matrices(skin, buffers, world), weights)
+        return Shown(mesh, np.eye(4)[None], world.of_joints(skin, buffers), weights)
     matrix = world.matrix(index)
     instancing = node.extension(_INSTANCING)
     if instancing is None:
         return Shown(mesh, matrix[None], None, weights)
-    instances = _instance_matrices(instancing.need("attributes"), buffers)
+    instances = _instance_matrices(root, instancing.need("attributes"), buffers)
     return Shown(mesh, matrix @ instances, None, weights)
 
 
@@ -81,13 +83,17 @@ def _is_hidden(node: Element) -> bool:
     )
 
 
-def _instance_matrices(attributes: Element, buffers: Buffers) -> Float64Array:
+def _instance_matrices(root: Element, attributes: Element, buffers: Buffers) -> Float64Array:
     """(k, 4, 4) from TRANSLATION, ROTATION and SCALE, of which any may be missing."""
-    read = {
-        key: buffers.numbers(attributes.integer(key), width)
-        for key, width in (("TRANSLATION", 3), ("ROTATION", 4), ("SCALE", 3))
-        if attributes.get(key) is not None
-    }
+    read: dict[str, Float64Array] = {}
+    for key, width in (("TRANSLATION", 3), ("ROTATION", 4), ("SCALE", 3)):
+        accessor = attributes.optional(key)
+        if accessor is None:
+            continue
+        stated = root.entry("accessors", accessor).integer("count")
+        if stated > MOST_INSTANCES:
+            attributes.fail(f"at most {MOST_INSTANCES} instances", stated)
+        read[key] = buffers.numbers(accessor, width)
     counts = {len(values) for values in read.values()}
     if len(counts) != 1:
         attributes.fail("as many instances in each attribute", sorted(counts))
@@ -102,20 +108,6 @@ def _instance_matrices(attributes: Element, buffers: Buffers) -> Float64Array:
     return matrices
 
 
-def _joint_matrices(skin: Element, buffers: Buffers, world: _Worlds) -> Float64Array:
-    """(j, 4, 4): world transform of each joint times its inverse bind matrix."""
-    joints = _indices(skin, "joints")
-    matrices = np.array([world.matrix(joint) for joint in joints]).reshape(-1, 4, 4)
-    inverse = skin.optional("inverseBindMatrices")
-    if inverse is None:
-        return matrices
-    columns = buffers.numbers(inverse, 16)
-    if len(columns) < len(joints):
-        skin.fail(f"{len(joints)} inverse bind matrices", len(columns))
-    bound: Float64Array = matrices @ columns[: len(joints)].reshape(-1, 4, 4).transpose(0, 2, 1)
-    return bound
-
-
 class _Worlds:
     """The world matrices (4, 4) of nodes, each made once."""
 
@@ -127,6 +119,25 @@ class _Worlds:
             for child in _indices(node, "children")
         }
         self._made: dict[int, Float64Array] = {}
+        self._skins: dict[str, Float64Array] = {}
+
+    def of_joints(self, skin: Element, buffers: Buffers) -> Float64Array:
+        """(j, 4, 4): world transform of each joint times its inverse bind matrix."""
+        if skin.path not in self._skins:
+            self._skins[skin.path] = self._of_joints(skin, buffers)
+        return self._skins[skin.path]
+
+    def _of_joints(self, skin: Element, buffers: Buffers) -> Float64Array:
+        joints = _indices(skin, "joints")
+        matrices = np.array([self.matrix(joint) for joint in joints]).reshape(-1, 4, 4)
+        inverse = skin.optional("inverseBindMatrices")
+        if inverse is None:
+            return matrices
+        columns = buffers.numbers(inverse, 16)
+        if len(columns) < len(joints):
+            skin.fail(f"{len(joints)} inverse bind matrices", len(columns))
+        bound: Float64Array = matrices @ columns[: len(joints)].reshape(-1, 4, 4).transpose(0, 2, 1)
+        return bound
 
     def matrix(self, index: int) -> Float64Array:
         """That of node `index`. Raises MeshError for a node that is its own ancestor."""

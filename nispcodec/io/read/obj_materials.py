@@ -26,6 +26,8 @@ _MOVING = {"-s": 1.0, "-o": 0.0}
 _CHANGING = {"-boost", "-cc", "-imfchan", "-mm"}
 # Words that one file name is looked for in, where a statement names several files.
 MOST_WORDS = 8
+# Words of one statement that may be names of files.
+MOST_FILES = 64
 # Names that one warning lists.
 MOST_SHOWN = 8
 
@@ -60,6 +62,7 @@ class MaterialReader:
         self._libraries: set[Path] = set()
         self._lost = False
         self._known: dict[str, MtlMaterial] = {}
+        self._commented: dict[str, set[str]] = {}
         self._folders: dict[str, Folder] = {}
         self._placements: dict[str, Placement] = {}
 
@@ -80,13 +83,17 @@ class MaterialReader:
             found = parse_mtl(self._folder.read(path), path.name, self._warnings)
             self._known.update(found)
             self._folders.update(dict.fromkeys(found, Folder(path.parent)))
+            for name in found:
+                for short in wavefront.without_comments(name)[1:]:
+                    self._commented.setdefault(short, set()).add(name)
 
     def _library_paths(self, reference: str, place: str) -> list[Path]:
         """The files that a statement names: one, or several between spaces, with spaces in them."""
         texts = wavefront.without_comments(reference)
         whole = next((path for path in map(self._folder.find, texts) if path), None)
-        words = texts[-1].split() if whole is None else []
-        found, missing = [] if whole is None else [whole], []
+        if whole is not None:
+            return [whole]
+        words, found, missing = texts[-1].split()[:MOST_FILES], list[Path](), list[str]()
         while words:
             count, path = self._longest_found(words[:MOST_WORDS])
             if path is None:
@@ -115,8 +122,8 @@ class MaterialReader:
         for candidate in wavefront.without_comments(name):
             if candidate in self._known:
                 return candidate
-        alike = [each for each in self._known if name in wavefront.without_comments(each)]
-        return alike[0] if name and len(alike) == 1 else name
+        alike = self._commented.get(name, ())
+        return next(iter(alike)) if name and len(alike) == 1 else name
 
     def materials(self, names: Sequence[str]) -> tuple[Material, ...]:
         """One material for each name, in order; at least one.

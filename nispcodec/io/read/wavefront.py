@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Iterator, Sequence
+from itertools import islice
 
 from nispcodec.core.errors import MeshError
 
@@ -15,6 +16,8 @@ _NAMING = re.compile(
 )
 # What C libraries write for what is no finite number, which Python reads in part.
 _NOT_FINITE = re.compile(rb"[+-]?(?:nan(?:\(\w*\))?|inf(?:inity)?|1\.#\w+)", re.IGNORECASE)
+# More "#" in a line than this belong to no name.
+MOST_SIGNS = 8
 BYTE_ORDER_MARK = b"\xef\xbb\xbf"
 
 
@@ -66,10 +69,10 @@ def names(line: bytes, skipped: int = 1) -> tuple[str, ...]:
 def without_comments(name: str) -> list[str]:
     """The name, then what is left of it before each "#" that follows a space, the last one first.
 
-    Nothing is left of a name that is all comment.
+    Nothing is left of a name that is all comment. Only the first `MOST_SIGNS` count.
     """
-    cuts = [match.start() for match in re.finditer(r"(?:^|\s+)#", name)]
-    return [name, *(name[:cut] for cut in reversed(cuts))]
+    cuts = [match.start() for match in islice(re.finditer(r"(?:^|\s)#", name), MOST_SIGNS)]
+    return [name, *(name[:cut].rstrip() for cut in reversed(cuts))]
 
 
 def _unquoted(name: str) -> str:
