@@ -150,7 +150,11 @@ def baked(model: NispModel, mesh: TexturedMesh, size: int) -> TexturedMesh:
     from nispcodec.bake.rebake import rebaked
     from nispcodec.bake.unwrap import unwrap
 
-    return replace(rebaked(model, unwrap(mesh), size), warnings=mesh.warnings)
+    from .unwrapping import apart, with_collapsed_named
+
+    # The warning of textures that no longer fit is none here: new ones are made.
+    atlas = with_collapsed_named(replace(apart(unwrap, mesh), warnings=mesh.warnings))
+    return replace(rebaked(model, atlas, size), warnings=atlas.warnings)
 
 
 def _report(

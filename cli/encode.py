@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import shutil
 import time
-from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -113,23 +112,9 @@ def _loaded(path: Path, unwrap: bool) -> TexturedMesh:
     mesh = read_mesh(path)
     if not unwrap:
         return mesh
-    from nispcodec.bake.unwrap import unwrap as unwrapped
+    from .unwrapping import unwrapped
 
-    return _with_collapsed_named(unwrapped(mesh))
-
-
-def _with_collapsed_named(mesh: TexturedMesh) -> TexturedMesh:
-    """The mesh with a warning for faces that unwrapping gave no area."""
-    a, b, c = mesh.corner_uvs.transpose(1, 0, 2)
-    u, v = b - a, c - a
-    collapsed = int((u[:, 0] * v[:, 1] == u[:, 1] * v[:, 0]).sum()) if len(mesh.uvs) else 0
-    if not collapsed:
-        return mesh
-    warning = (
-        f"--unwrap: {collapsed} of {len(mesh.faces)} faces got no area in the atlas, "
-        f"being too small for it: scale small parts up, or encode them as an asset of their own"
-    )
-    return replace(mesh, warnings=(*mesh.warnings, warning))
+    return unwrapped(mesh)
 
 
 def _expect_possible(asset: TexturedMesh, config: EncodeConfig, output: Path) -> None:

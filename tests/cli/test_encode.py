@@ -1,14 +1,11 @@
 from __future__ import annotations
 
 import json
-from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
 
-import numpy as np
 import pytest
 
-from nispcodec.core.asset import TexturedMesh
 from nispcodec.core.errors import FitError
 from tests import tiny
 from tests.cli.conftest import Encoder, nisp
@@ -178,21 +175,6 @@ def test_a_full_disk_is_foreseen(
     monkeypatch.setattr("shutil.disk_usage", lambda _: SimpleNamespace(free=1000))
     said = refused_early(mesh, tmp_path / "out.nisp", encoder)
     assert "bytes free on the disk, found 1,000" in said
-
-
-def test_faces_that_unwrapping_gives_no_area_are_counted(
-    encoder: Encoder, mesh: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    encoder(tiny.document())
-
-    def flat(found: TexturedMesh) -> TexturedMesh:
-        uv_faces = np.zeros_like(found.uv_faces)
-        return replace(found, uvs=np.zeros((1, 2)), uv_faces=uv_faces)
-
-    monkeypatch.setattr("nispcodec.bake.unwrap.unwrap", flat)
-    result = nisp("encode", mesh, "-o", tmp_path / "out.nisp", "--unwrap", "--quiet")
-    assert result.exit_code == 0
-    assert "faces got no area in the atlas, being too small for it" in result.stderr
 
 
 @pytest.mark.parametrize("content", ["", "v 0 0 0\n", "v 0 0 nan\nf 1 1 1\n", "f 1 2 3\n"])
