@@ -292,13 +292,16 @@ def test_missing_uvs_are_never_lost_without_a_word(tmp_path: Path, there: bool) 
     assert ("TEXCOORD_0 is taken" if there else "maps are not shown") in mesh.warnings[0]
 
 
-def test_a_face_with_unusable_uvs_has_none(tmp_path: Path) -> None:
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize("unusable", [b"\0\0\xc0\x7f", b"\1\0\x80\x7f", b"\0\0\x80\x7f"])
+def test_a_face_with_unusable_uvs_has_none(tmp_path: Path, unusable: bytes) -> None:
     gltf = Gltf()
     primitive = triangle(gltf)
     primitive["attributes"] = {
         "POSITION": gltf.accessor([*CORNERS, (0, 0, 1)]),
-        "TEXCOORD_0": gltf.accessor([*UVS, (math.nan, 0)]),
+        "TEXCOORD_0": gltf.accessor([*UVS, (9.5, 0)]),
     }
+    gltf.data = gltf.data.replace(np.array(9.5, "<f4").tobytes(), unusable)
     primitive["indices"] = gltf.accessor([0, 1, 2, 0, 2, 3], "u1")
     mesh = gltf.scene([primitive]).load(tmp_path)
     assert mesh.has_uv.tolist() == [True, False]

@@ -114,7 +114,8 @@ class Buffers:
         if finite and not usable.all():
             element = int(usable.argmin())
             accessor.fail(f"finite numbers in element {element}", values[element].tolist())
-        numbers = values.astype(np.float64)
+        with np.errstate(invalid="ignore"):  # signaling NaN
+            numbers = values.astype(np.float64)
         if accessor.flag("normalized") and values.dtype.kind in "iu":
             numbers = np.maximum(numbers / np.iinfo(values.dtype).max, -1.0)
         return numbers
