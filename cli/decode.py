@@ -72,11 +72,13 @@ def command(
 ) -> None:
     """Write the surface of MODEL (.nisp, or - for standard input) as a textured mesh.
 
-    It is in the units of the original. An OBJ gets its MTL and images beside it.
+    It is in the units of the original. An OBJ gets its MTL and images beside it,
+    a PLY its images.
 
     \b
     Example: nisp decode model.nisp --mesh -o out.glb
     """
+    from nispcodec.io.save import losses
     from nispcodec.model import NispModel
 
     if colors and rebake:
@@ -88,6 +90,8 @@ def command(
     refuse_overwriting(_planned(loaded, output, colors, bool(rebake)), force)
     with shown("decode", progress, quiet) as listen:
         mesh, written = _written(loaded, output, colors, rebake, how, listen)
+    if not colors:
+        mesh = replace(mesh, warnings=(*mesh.warnings, *losses(mesh, output)))
     warn(mesh.warnings)
     report = _report(mesh, output, written, time.monotonic() - started)
     if as_json:
@@ -146,7 +150,11 @@ def baked(model: NispModel, mesh: TexturedMesh, size: int) -> TexturedMesh:
     from nispcodec.bake.rebake import rebaked
     from nispcodec.bake.unwrap import unwrap
 
-    return replace(rebaked(model, unwrap(mesh), size), warnings=mesh.warnings)
+    from .unwrapping import apart, with_collapsed_named
+
+    # The warning of textures that no longer fit is none here: new ones are made.
+    atlas = with_collapsed_named(replace(apart(unwrap, mesh), warnings=mesh.warnings))
+    return replace(rebaked(model, atlas, size), warnings=atlas.warnings)
 
 
 def _report(

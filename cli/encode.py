@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shutil
 import time
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -22,7 +23,11 @@ from .subcommand import force_option, json_option, subcommand
 
 if TYPE_CHECKING:
     from nispcodec.core.asset import TexturedMesh
+    from nispcodec.encode.config import EncodeConfig
     from nispcodec.model import NispModel
+
+LARGEST_NETWORKS = 1_000_000
+"""Bytes of a file besides its textures: more than any preset writes."""
 
 
 @subcommand("encode", "Fit networks to a mesh and write a .nisp file.")
@@ -99,6 +104,7 @@ def command(
     config = nispcodec.EncodeConfig(textures=not no_textures, **how)
     asset = _loaded(mesh, unwrap)
     warn(asset.warnings)
+    _expect_possible(asset, config, output)
     with shown("encode", progress, quiet) as listen:
         model = nispcodec.encode(asset, config, progress=listen)
     nispcodec.save(model, output)
@@ -113,9 +119,32 @@ def _loaded(path: Path, unwrap: bool) -> TexturedMesh:
     mesh = read_mesh(path)
     if not unwrap:
         return mesh
-    from nispcodec.bake.unwrap import unwrap as unwrapped
+    from .unwrapping import unwrapped
 
     return unwrapped(mesh)
+
+
+def _expect_possible(asset: TexturedMesh, config: EncodeConfig, output: Path) -> None:
+    """Raises NispError, before the work, for what would fail after it."""
+    from nispcodec.core.errors import NispError
+    from nispcodec.format.constants import MAX_ITEMS
+    from nispcodec.format.materials import encode_material, encode_textures
+
+    textures = asset.textures if config.textures else ()
+    for what, found in (("materials", asset.materials), ("textures", textures)):
+        if len(found) > MAX_ITEMS:
+            raise NispError(f"{what}: expected at most {MAX_ITEMS}, found {len(found)}")
+    for material in asset.materials:
+        encode_material(material)
+    encode_textures(textures)
+    needed = LARGEST_NETWORKS + sum(len(texture.data) for texture in textures)
+    free = shutil.disk_usage(output.parent).free
+    if free < needed:
+        raise NispError(f"{output}: expected {needed:,} bytes free on the disk, found {free:,}")
+    if config.device not in ("auto", "cpu"):
+        from nispcodec.train.workers import resolve_device
+
+        resolve_device(config.device)
 
 
 def _report(

@@ -57,7 +57,7 @@ def model(tmp_path: Path) -> Path:
 def test_a_plain_install_decodes_queries_verifies_and_converts(model: Path, tmp_path: Path) -> None:
     assert "sound" in works("verify", model)
     assert works("info", model)
-    for name in ("out.glb", "out.obj", "out.ply", "out.stl"):
+    for name in ("out.glb", "out.obj", "other.ply", "out.stl"):
         works("decode", model, "-o", tmp_path / name, "--resolution", "24")
     works("decode", model, "-o", tmp_path / "few.glb", "--resolution", "24", "--faces", "100")
     points = tmp_path / "points.csv"

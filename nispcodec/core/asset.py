@@ -6,6 +6,7 @@ convert at the border of the program. Positions are in the world frame, in the u
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -14,10 +15,12 @@ import numpy as np
 
 from nispcodec.core.arrays import AnyArray, BoolArray, Float64Array, Int32Array, IntArray
 from nispcodec.core.errors import MeshError
+from nispcodec.core.slots import SLOTS
 
 WRAPS = ("repeat", "clamp", "mirror")
 FILTERS = ("linear", "nearest")
 ALPHA_MODES = ("opaque", "mask", "blend")
+_CONTROL = re.compile(r"[\x00-\x1f\x7f\ud800-\udfff]")
 MIME_TYPES = ("image/png", "image/jpeg", "image/webp", "image/avif")
 
 
@@ -77,8 +80,9 @@ class TexturedMesh:
     face_materials (m,)   int32, into materials
     warnings       what the reader had to leave out or guess, one sentence each
 
-    Raises MeshError for an array of another shape or type, a number that is not finite, or an index
-    out of range.
+    Raises MeshError for an array of another shape or type, a number that is not finite, an index
+    out of range, a material's name with control characters, and a map, wrap, filter or alpha mode
+    that there is none of.
     """
 
     positions: Float64Array
@@ -101,6 +105,8 @@ class TexturedMesh:
         _expect_range("faces", self.faces, 0, len(self.positions))
         _expect_range("uv_faces", self.uv_faces, -1, len(self.uvs))
         _expect_range("face_materials", self.face_materials, 0, len(self.materials))
+        for material in self.materials:
+            _expect_material(material, len(self.textures))
 
     def save(self, path: str | Path) -> list[Path]:
         """Write the mesh in the format of the path's suffix -> the files written.
@@ -154,6 +160,27 @@ def _expect(name: str, array: AnyArray, shape: tuple[int | None, ...], dtype: ty
         )
     if dtype is np.float64 and not np.isfinite(array).all():
         raise MeshError(f"{name}: expected finite numbers, found NaN or infinity")
+
+
+def _expect_material(material: Material, textures: int) -> None:
+    place = f"material {material.name!r}"
+    if _CONTROL.search(material.name):
+        raise MeshError(f"{place}: expected a name without control characters")
+    _expect_member(f"{place}: alpha mode", material.alpha_mode, ALPHA_MODES)
+    for slot, used in material.maps.items():
+        _expect_member(f"{place}: slot", slot, SLOTS)
+        _expect_member(f"{place}.{slot}: filter", used.filter, FILTERS)
+        for wrap in used.wrap:
+            _expect_member(f"{place}.{slot}: wrap", wrap, WRAPS)
+        if not 0 <= used.texture < textures:
+            raise MeshError(
+                f"{place}.{slot}: expected a texture below {textures}, found {used.texture}"
+            )
+
+
+def _expect_member(place: str, found: str, members: tuple[str, ...]) -> None:
+    if found not in members:
+        raise MeshError(f"{place}: expected one of {', '.join(members)}, found {found!r}")
 
 
 def _expect_range(name: str, indices: Int32Array, low: int, high: int) -> None:

@@ -8,6 +8,7 @@ from __future__ import annotations
 import io
 import struct
 import warnings
+import zlib
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from itertools import count
@@ -32,8 +33,21 @@ if TYPE_CHECKING:
     import PIL.Image
 
 
-# What Pillow's readers raise for malformed files.
-_BROKEN = (OSError, ValueError, SyntaxError, EOFError, struct.error)
+BROKEN_IMAGE = (
+    OSError,
+    ValueError,
+    SyntaxError,
+    EOFError,
+    ArithmeticError,
+    LookupError,
+    RuntimeError,
+    TypeError,
+    struct.error,
+    zlib.error,
+)
+"""What Pillow's readers raise for malformed files."""
+# The formats of textures, by Pillow's name: others may start programs, or write where they like.
+_FORMATS = ("PNG", "JPEG", "WEBP", "AVIF")
 
 
 def image_size(texture: Texture) -> tuple[int, int]:
@@ -46,10 +60,10 @@ def image_size(texture: Texture) -> tuple[int, int]:
     try:
         with (
             warnings.catch_warnings(action="ignore", category=PIL.Image.DecompressionBombWarning),
-            PIL.Image.open(io.BytesIO(texture.data)) as image,
+            PIL.Image.open(io.BytesIO(texture.data), formats=_FORMATS) as image,
         ):
             return image.size
-    except (*_BROKEN, PIL.Image.DecompressionBombError) as why:
+    except (*BROKEN_IMAGE, PIL.Image.DecompressionBombError) as why:
         raise MeshError(f"texture {texture.name}: expected an image, found: {why}") from why
 
 
@@ -66,10 +80,14 @@ def decode_image(texture: Texture) -> Float32Array:
         # Pillow's guard against decompression bombs only warns below twice its limit.
         with (
             warnings.catch_warnings(action="error", category=PIL.Image.DecompressionBombWarning),
-            PIL.Image.open(io.BytesIO(texture.data)) as image,
+            PIL.Image.open(io.BytesIO(texture.data), formats=_FORMATS) as image,
         ):
             return _to_rgba(image)
-    except (*_BROKEN, PIL.Image.DecompressionBombWarning, PIL.Image.DecompressionBombError) as why:
+    except (
+        *BROKEN_IMAGE,
+        PIL.Image.DecompressionBombWarning,
+        PIL.Image.DecompressionBombError,
+    ) as why:
         raise MeshError(f"texture {texture.name}: expected an image, found: {why}") from why
 
 

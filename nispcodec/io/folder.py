@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import unicodedata
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -19,8 +20,8 @@ class Folder:
     def find(self, reference: str) -> Path | None:
         """The file meant by `reference`, or None.
 
-        Backslashes count as slashes and case does not matter. A path from another machine falls
-        back to its last part, beside the asset.
+        Backslashes count as slashes, and neither case nor the way matters in which accents are
+        composed. A path from another machine falls back to its last part, beside the asset.
         """
         parts = [part for part in re.split(r"[\\/]+", reference) if part not in ("", ".")]
         if not parts:
@@ -37,7 +38,7 @@ class Folder:
 
 
 def _walk(folder: Path, parts: Sequence[str]) -> Path | None:
-    """Descend, taking each part exactly or else whatever its case; only regular files count."""
+    """Descend, taking each part exactly or else as `_alike`; only regular files count."""
     found = folder
     for part in parts:
         step = _entry(found, part)
@@ -56,4 +57,9 @@ def _entry(folder: Path, name: str) -> Path | None:
         entries = sorted(folder.iterdir())
     except (OSError, ValueError):  # not a folder, or a name that no file can have
         return None
-    return next((entry for entry in entries if entry.name.casefold() == name.casefold()), None)
+    return next((entry for entry in entries if _alike(entry.name) == _alike(name)), None)
+
+
+def _alike(name: str) -> str:
+    """Equal for names that differ in case, or in NFC and NFD as archives from macOS have it."""
+    return unicodedata.normalize("NFC", unicodedata.normalize("NFC", name).casefold())

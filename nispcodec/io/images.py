@@ -4,9 +4,7 @@ from __future__ import annotations
 
 import io
 import re
-import struct
 import warnings
-import zlib
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import PurePath
@@ -14,8 +12,10 @@ from pathlib import PurePath
 import numpy as np
 import PIL.Image
 
+from nispcodec.core.arrays import Uint16Array
 from nispcodec.core.asset import Texture
 from nispcodec.core.errors import MeshError
+from nispcodec.core.texture import BROKEN_IMAGE
 
 # The formats that stay as they are, by Pillow's name.
 _KEPT = {
@@ -40,20 +40,18 @@ _CONVERTED = (
     "ICO",
 )
 # First bytes of formats that assets come with and that no reader here knows.
-_UNSUPPORTED = {b"v/1\x01": "an OpenEXR", b"#?RADIANCE": "a Radiance", b"\xabKTX": "a KTX"}
-# What Pillow's readers raise for malformed files.
-_BROKEN = (
-    OSError,
-    ValueError,
-    SyntaxError,
-    EOFError,
-    ArithmeticError,
-    LookupError,
-    RuntimeError,
-    TypeError,
-    struct.error,
-    zlib.error,
-)
+_UNSUPPORTED = {
+    b"v/1\x01": "an OpenEXR",
+    b"#?RADIANCE": "a Radiance",
+    b"\xabKTX": "a KTX",
+    b"<svg": "an SVG",
+}
+# What may stand before the first element of XML.
+_BEFORE_XML = re.compile(rb"^(\xef\xbb\xbf)?(\s+|<[?!][^>]*>)*")
+_START_OF_JPEG, _END_OF_JPEG = b"\xff\xd8", b"\xff\xd9"
+# Pillow's modes that PNG holds as they are; wide gray is narrowed, others become RGBA.
+_PNG_MODES = ("1", "L", "LA", "RGB", "RGBA", "P", "I;16")
+_BITS, _SAMPLE_FORMAT, _SIGNED = 258, 339, 2  # of TIFF
 
 
 class TextureShelf:
@@ -68,28 +66,49 @@ class TextureShelf:
         """The index of the texture with these bytes, which is added if it is new.
 
         `name` is the image's file name, `place` says in messages where it stands. None, with a
-        warning, for a format that is known but not supported. Raises MeshError for bytes that are
-        no image.
+        warning, for what is no image that can be read: the asset goes on without.
         """
-        kind = _unsupported(data)
-        if kind is not None:
-            self._warnings.append(f"{place}: {kind} image is not supported: left out")
-            return None
         if data not in self._places:
-            texture = self._checked(name, data, place)
-            self._places[data] = len(self.textures)
-            self.textures.append(texture)
+            try:
+                texture = self._texture(name, data, place)
+            except MeshError as why:
+                self._warnings.append(f"{why}: left out")
+                return None
+            self._places[data] = self._placed(texture)
         return self._places[data]
 
-    def _checked(self, name: str, data: bytes, place: str) -> Texture:
-        image = _decoded(data, place)
-        found = str(image.format)
-        stem = _stem(name)
+    def _placed(self, texture: Texture) -> int:
+        """The index of the texture with these bytes, which may have been here from the start."""
+        for index, known in enumerate(self.textures):
+            if known.data == texture.data:
+                return index
+        self.textures.append(texture)
+        return len(self.textures) - 1
+
+    def _texture(self, name: str, data: bytes, place: str) -> Texture:
+        kind = _unsupported(data)
+        if kind is not None:
+            raise MeshError(f"{place}: {kind} image is not supported")
+        data, image = self._whole(data, place)
+        found, stem = str(image.format), _stem(name)
         if found in _KEPT:
             mime, suffix = _KEPT[found]
             return Texture(self._free_name(stem, suffix), data, mime)
+        png = _as_png(image, place)
         self._warnings.append(f"{place}: a {found} image, converted to PNG")
-        return Texture(self._free_name(stem, ".png"), _as_png(image, place), "image/png")
+        return Texture(self._free_name(stem, ".png"), png, "image/png")
+
+    def _whole(self, data: bytes, place: str) -> tuple[bytes, PIL.Image.Image]:
+        """The bytes and the image in them; a JPEG that is cut short gets its end mark."""
+        try:
+            return data, _decoded(data, place)
+        except MeshError:
+            ended = data + _END_OF_JPEG
+            image = _decoded_or_none(ended) if data.startswith(_START_OF_JPEG) else None
+            if image is None:
+                raise
+        self._warnings.append(f"{place}: cut short: what is missing of the image is gray")
+        return ended, image
 
     def _free_name(self, stem: str, suffix: str) -> str:
         taken = {texture.name.casefold() for texture in self.textures}
@@ -97,19 +116,28 @@ class TextureShelf:
         return next(name for name in names if name.casefold() not in taken)
 
 
-def is_gray(data: bytes, place: str) -> bool:
+def is_gray(data: bytes) -> bool:
     """Whether an image has no color anywhere, told from 64 x 64 of its texels.
 
-    `place` names it in messages. Raises MeshError for bytes that are no image.
+    False for what cannot be decoded.
     """
-    if _unsupported(data) is not None:
+    image = _decoded_or_none(data)
+    if image is None:
         return False
-    small = _decoded(data, place).convert("RGB").resize((64, 64), PIL.Image.Resampling.NEAREST)
+    small = image.convert("RGB").resize((64, 64), PIL.Image.Resampling.NEAREST)
     return bool(np.ptp(np.asarray(small, dtype=np.int16), axis=2).max() <= 2)
 
 
 def _unsupported(data: bytes) -> str | None:
-    return next((kind for start, kind in _UNSUPPORTED.items() if data.startswith(start)), None)
+    head = _BEFORE_XML.sub(b"", data[:2000])
+    return next((kind for start, kind in _UNSUPPORTED.items() if head.startswith(start)), None)
+
+
+def _decoded_or_none(data: bytes) -> PIL.Image.Image | None:
+    try:
+        return _decoded(data, "image")
+    except MeshError:
+        return None
 
 
 def _decoded(data: bytes, place: str) -> PIL.Image.Image:
@@ -124,11 +152,28 @@ def _decoded(data: bytes, place: str) -> PIL.Image.Image:
 
 
 def _as_png(image: PIL.Image.Image, place: str) -> bytes:
+    if image.mode == "LAB":  # Pillow would take its numbers for RGB
+        raise MeshError(f"{place}: expected an image in RGB or gray, found one in L*a*b*")
+    if image.mode in ("I", "F"):
+        image = PIL.Image.fromarray(_gray_16(image))
     buffer = io.BytesIO()
-    mode = image.mode if image.mode in ("1", "L", "LA", "RGB", "RGBA", "P", "I;16") else "RGBA"
     with _pillow(place):
-        image.convert(mode).save(buffer, "PNG")
+        image.convert(image.mode if image.mode in _PNG_MODES else "RGBA").save(buffer, "PNG")
     return buffer.getvalue()
+
+
+def _gray_16(image: PIL.Image.Image) -> Uint16Array:
+    """Gray of a wide type in 16 bits: the whole range of integers, 0 to 1 of floats."""
+    values = np.asarray(image)
+    if image.mode == "F":
+        shares = np.nan_to_num(values.astype(np.float64), nan=0.0)
+    else:
+        tags = getattr(image, "tag_v2", {})
+        bits, signed = tags.get(_BITS, (16,))[0], tags.get(_SAMPLE_FORMAT, (1,))[0] == _SIGNED
+        # Pillow keeps all integers as signed ones of 32 bits.
+        integers = values if signed else values.astype(np.int64) % 2**32
+        shares = integers / (2.0 ** (bits - signed) - 1)
+    return np.rint(np.clip(shares, 0.0, 1.0) * 65535).astype(np.uint16)
 
 
 @contextmanager
@@ -140,7 +185,13 @@ def _pillow(place: str) -> Iterator[None]:
             # Pillow only warns of images below twice its limit.
             warnings.simplefilter("error", PIL.Image.DecompressionBombWarning)
             yield
-    except (*_BROKEN, PIL.Image.DecompressionBombWarning, PIL.Image.DecompressionBombError) as why:
+    except (PIL.Image.DecompressionBombWarning, PIL.Image.DecompressionBombError) as why:
+        found = re.search(r"\d+ pixels", str(why))
+        raise MeshError(
+            f"{place}: expected an image of at most {PIL.Image.MAX_IMAGE_PIXELS} pixels, found "
+            f"{found[0] if found else 'more'} (8192 x 8192 can be read)"
+        ) from why
+    except BROKEN_IMAGE as why:
         reason = str(why).split("<_io")[0]
         raise MeshError(f"{place}: expected an image that can be decoded, found: {reason}") from why
 
@@ -148,4 +199,5 @@ def _pillow(place: str) -> Iterator[None]:
 def _stem(name: str) -> str:
     """A bare file name that every file system takes."""
     stem = PurePath(re.split(r"[\\/]", name)[-1]).stem
-    return re.sub(r'[\x00-\x1f<>:"|?*]', "_", stem).strip(" .")[:100] or "texture"
+    plain = re.sub(r'[\x00-\x1f\x7f\ud800-\udfff<>:"|?*]', "_", stem)
+    return plain.encode()[:100].decode(errors="ignore").strip(" .") or "texture"

@@ -10,6 +10,7 @@ from nispcodec.core.asset import TexturedMesh
 from nispcodec.core.errors import MeshError
 from nispcodec.io.cleanup import clean
 from nispcodec.io.folder import Folder
+from nispcodec.io.outliers import with_outliers_named
 from nispcodec.io.read.gltf import read_gltf
 from nispcodec.io.read.obj import read_obj
 from nispcodec.io.read.off import read_off
@@ -41,7 +42,8 @@ def load_mesh(path: str | Path) -> TexturedMesh:
     if reader is None:
         raise MeshError(f"{path}: expected one of {' '.join(READERS)}, found {path.suffix!r}")
     data = _read(path)
-    return replace(clean(reader(data, path.name, Folder(path.parent)), path.name), name=path.stem)
+    mesh = clean(reader(data, path.name, Folder(path.parent)), path.name)
+    return replace(with_outliers_named(mesh), name=path.stem)
 
 
 def _read(path: Path) -> bytes:

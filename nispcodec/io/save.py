@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+import re
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -14,9 +15,13 @@ from nispcodec.core.atomic_write import write_atomic
 from nispcodec.core.errors import MeshError
 from nispcodec.io.write.colors import untextured
 from nispcodec.io.write.glb import glb_bytes
+from nispcodec.io.write.losses import glb_losses, obj_losses, ply_losses, stl_losses
 from nispcodec.io.write.obj import obj_files
-from nispcodec.io.write.ply import ply_bytes
+from nispcodec.io.write.ply import ply_files
 from nispcodec.io.write.stl import stl_bytes
+
+# OBJ and PLY name their images in lines of text.
+_CONTROL = re.compile(r"[\x00-\x1f\x7f]")
 
 Writer = Callable[[TexturedMesh, str, Float32Array | None], dict[str, bytes]]
 """Mesh, stem of the file name, colors (n, 4) of the vertices or None -> file names and bytes."""
@@ -31,12 +36,29 @@ def _alone(
 
 WRITERS: dict[str, Writer] = {
     **_alone(".glb", glb_bytes),
-    **_alone(".ply", ply_bytes),
+    ".ply": ply_files,
     **_alone(".stl", stl_bytes),
     ".obj": obj_files,
 }
 SUFFIXES = tuple(WRITERS)
 """A new format is a file in `io/write` and a line here."""
+
+# What each format leaves out of a mesh.
+LOSSES: dict[str, Callable[[TexturedMesh], Iterable[str]]] = {
+    ".glb": glb_losses,
+    ".ply": ply_losses,
+    ".stl": stl_losses,
+    ".obj": obj_losses,
+}
+
+
+def losses(mesh: TexturedMesh, path: str | Path) -> tuple[str, ...]:
+    """The sentences that say what `write_mesh` leaves out of a mesh for this path.
+
+    None for a suffix that is not written. Colors in place of textures are no loss.
+    """
+    find = LOSSES.get(Path(path).suffix.lower())
+    return tuple(f"{path}: left out {what}" for what in find(mesh)) if find else ()
 
 
 def write_mesh(
@@ -44,7 +66,8 @@ def write_mesh(
 ) -> list[Path]:
     """Write the mesh in the format of the path's suffix -> the files written, `path` last.
 
-    An OBJ has its MTL and images beside it. Each file is written whole or not at all. `colors`
+    An OBJ has its MTL and images beside it, a PLY its images; what a format cannot hold is left out
+    (`losses`). Each file is written whole or not at all. `colors`
     (n, 4), sRGB-encoded in [0, 1], one for each position, take the place of UVs, materials and
     textures. Raises MeshError for an unknown suffix, no faces, colors that do not fit or that the
     format cannot hold; NispError when writing fails.
@@ -90,6 +113,8 @@ def _files(mesh: TexturedMesh, path: Path, colors: Float32Array | None) -> dict[
     if suffix not in WRITERS:
         found = repr(path.suffix) if path.suffix else "none"
         raise MeshError(f"{path}: expected a suffix of {', '.join(SUFFIXES)}, found {found}")
+    if "\0" in str(path) or _CONTROL.search(path.name):
+        raise MeshError(f"{str(path)!r}: expected a name without control characters")
     files = WRITERS[suffix](mesh, path.stem, colors)
     files[path.name] = files.pop(f"{path.stem}{suffix}")
     return files

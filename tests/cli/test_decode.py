@@ -62,6 +62,14 @@ def test_colors_that_a_format_cannot_hold_are_refused_before_the_work(
     refused(result, "STL holds no colors")
 
 
+def test_it_says_what_the_format_cannot_hold(model: Path, tmp_path: Path) -> None:
+    out = tmp_path / "out.stl"
+    result = done("decode", model, "-o", out, "--resolution", 24)
+    assert f"nisp: warning: {out}: left out texture coordinates" in result.stderr
+    colored = done("decode", model, "-o", tmp_path / "out.ply", "--resolution", 24, "--colors")
+    assert "left out" not in colored.stderr
+
+
 def test_it_says_bytes_seconds_faces_and_how_to_get_fewer(model: Path, tmp_path: Path) -> None:
     out = tmp_path / "out.obj"
     result = done("decode", model, "-o", out, "--resolution", 24)

@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
@@ -142,6 +143,38 @@ def test_bad_output_is_refused_before_any_work(
     assert nisp("encode", mesh, "-o", tmp_path / "out.obj").exit_code == 2
     assert nisp("encode", mesh, "-o", tmp_path / "nowhere" / "out.nisp").exit_code == 2
     assert seen == {}
+
+
+def refused_early(mesh: Path, out: Path, encoder: Encoder, *options: str) -> str:
+    """What is said when nothing was fitted."""
+    seen = encoder(tiny.document())
+    result = nisp("encode", mesh, "-o", out, *options)
+    assert result.exit_code == 2
+    assert seen == {}
+    return result.stderr
+
+
+def test_a_device_that_is_not_there_is_refused_before_any_work(
+    encoder: Encoder, mesh: Path, tmp_path: Path
+) -> None:
+    said = refused_early(mesh, tmp_path / "out.nisp", encoder, "--device", "cuda:99")
+    assert "device: expected one that torch finds here" in said
+
+
+def test_too_many_materials_are_refused_before_any_work(encoder: Encoder, tmp_path: Path) -> None:
+    names = "".join(f"usemtl m{number}\nf 1 2 3\n" for number in range(4097))
+    path = tmp_path / "many.obj"
+    path.write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\n" + names)
+    said = refused_early(path, tmp_path / "out.nisp", encoder)
+    assert "materials: expected at most 4096, found 4097" in said
+
+
+def test_a_full_disk_is_foreseen(
+    encoder: Encoder, mesh: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("shutil.disk_usage", lambda _: SimpleNamespace(free=1000))
+    said = refused_early(mesh, tmp_path / "out.nisp", encoder)
+    assert "bytes free on the disk, found 1,000" in said
 
 
 @pytest.mark.parametrize("content", ["", "v 0 0 0\n", "v 0 0 nan\nf 1 1 1\n", "f 1 2 3\n"])

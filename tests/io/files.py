@@ -19,6 +19,8 @@ from nispcodec.io.load import load_mesh
 
 TRIANGLE = "v 0 0 0\nv 1 0 0\nv 0 1 0\n"
 
+_TYPES = {1: "SCALAR", 2: "VEC2", 3: "VEC3", 4: "VEC4", 16: "MAT4"}
+
 
 def image(format: str = "PNG", color: tuple[int, int, int] = (200, 30, 30), size: int = 4) -> bytes:
     buffer = io.BytesIO()
@@ -70,7 +72,7 @@ class Gltf:
             "bufferView": self.view(array.tobytes()),
             "componentType": codes[dtype[-2:]],
             "count": len(array),
-            "type": ("SCALAR", "VEC2", "VEC3")[array.shape[1] - 1 if array.ndim > 1 else 0],
+            "type": _TYPES[array.shape[1] if array.ndim > 1 else 1],
             **more,
         }
         self.json["accessors"].append(accessor)

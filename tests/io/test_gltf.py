@@ -264,10 +264,160 @@ def test_texcoord_chooses_the_uvs(tmp_path: Path) -> None:
     assert mesh.corner_uvs[0].tolist() == [[u, 1 - v] for u, v in other]
 
 
-def test_maps_of_different_uvs_take_the_base_colors_and_warn(tmp_path: Path) -> None:
-    mesh = textured(normalTexture={"index": 0, "texCoord": 1}).load(tmp_path)
+@pytest.mark.parametrize(
+    "info", [{"texCoord": 1}, {"extensions": {"KHR_texture_transform": {"scale": [2, 2]}}}]
+)
+def test_maps_of_other_uvs_than_the_base_colors_are_left_out(
+    tmp_path: Path, info: dict[str, Any]
+) -> None:
+    mesh = textured(occlusionTexture={"index": 0, **info}, emissiveTexture={"index": 0}).load(
+        tmp_path
+    )
     assert mesh.corner_uvs[0, 1].tolist() == [0.25, 0.5]
-    assert "those of base_color are taken for all" in mesh.warnings[0]
+    assert set(mesh.materials[0].maps) == {"base_color", "emissive"}
+    assert mesh.warnings == (
+        "a.glb: materials[0]: left out the maps for occlusion: "
+        "they use other texture coordinates than base_color",
+    )
+
+
+@pytest.mark.parametrize("there", [True, False])
+def test_missing_uvs_are_never_lost_without_a_word(tmp_path: Path, there: bool) -> None:
+    gltf = textured({"texCoord": 1})
+    if not there:
+        del gltf.json["meshes"][0]["primitives"][0]["attributes"]["TEXCOORD_0"]
+    mesh = gltf.load(tmp_path)
+    assert mesh.has_uv.all() == there
+    assert "no TEXCOORD_1, which the material looks up" in mesh.warnings[0]
+    assert ("TEXCOORD_0 is taken" if there else "maps are not shown") in mesh.warnings[0]
+
+
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize("unusable", [b"\0\0\xc0\x7f", b"\1\0\x80\x7f", b"\0\0\x80\x7f"])
+def test_a_face_with_unusable_uvs_has_none(tmp_path: Path, unusable: bytes) -> None:
+    gltf = Gltf()
+    primitive = triangle(gltf)
+    primitive["attributes"] = {
+        "POSITION": gltf.accessor([*CORNERS, (0, 0, 1)]),
+        "TEXCOORD_0": gltf.accessor([*UVS, (9.5, 0)]),
+    }
+    gltf.data = gltf.data.replace(np.array(9.5, "<f4").tobytes(), unusable)
+    primitive["indices"] = gltf.accessor([0, 1, 2, 0, 2, 3], "u1")
+    mesh = gltf.scene([primitive]).load(tmp_path)
+    assert mesh.has_uv.tolist() == [True, False]
+    assert "texture coordinates of 1 face(s) are no finite numbers" in mesh.warnings[0]
+
+
+def test_factors_that_are_not_finite_are_left_out(tmp_path: Path) -> None:
+    gltf = textured(emissiveFactor=[math.inf, 0, 0])
+    gltf.json["materials"][0]["pbrMetallicRoughness"]["metallicFactor"] = math.nan
+    mesh = gltf.load(tmp_path)
+    assert (mesh.materials[0].metallic, mesh.materials[0].emissive) == (1.0, (0.0, 0.0, 0.0))
+    assert "metallicFactor, emissiveFactor no finite numbers" in mesh.warnings[0]
+
+
+@pytest.mark.parametrize("name", ["a\tb", "a\x7fb", "a\ud800b"])
+def test_names_that_are_no_text_become_some(tmp_path: Path, name: str) -> None:
+    gltf = textured()
+    gltf.json["materials"][0]["name"] = name
+    mesh = gltf.load(tmp_path)
+    assert mesh.materials[0].name == "a_b"
+    assert mesh.warnings[0].endswith("control characters in its name became '_'")
+
+
+def test_instances_by_extension(tmp_path: Path) -> None:
+    gltf = one_triangle(translation=[0, 0, 5])
+    half = math.sqrt(0.5)
+    attributes = {
+        "TRANSLATION": gltf.accessor([(0, 0, 0), (3, 0, 0)]),
+        "ROTATION": gltf.accessor([(0, 0, 0, 1), (0, 0, half, half)]),
+        "SCALE": gltf.accessor([(1, 1, 1), (2, 2, -2)]),
+    }
+    gltf.json["nodes"][0]["extensions"] = {"EXT_mesh_gpu_instancing": {"attributes": attributes}}
+    gltf.json["extensionsRequired"] = ["EXT_mesh_gpu_instancing"]
+    mesh = gltf.load(tmp_path)
+    expected = [[(0, 0, 5), (1, 0, 5), (0, 1, 5)], [(3, 0, 5), (1, 0, 5), (3, 2, 5)]]
+    np.testing.assert_allclose(mesh.corners, expected, atol=1e-6)
+    np.testing.assert_array_equal(mesh.corner_uvs[1], mesh.corner_uvs[0][[0, 2, 1]])
+
+
+def test_too_many_instances_are_refused_before_memory_is_taken(tmp_path: Path) -> None:
+    gltf = one_triangle()
+    zeros = gltf.accessor(CORNERS)
+    gltf.json["accessors"][zeros].update(count=9_999_999)
+    del gltf.json["accessors"][zeros]["bufferView"]
+    attributes = {"SCALE": zeros}
+    gltf.json["nodes"][0]["extensions"] = {"EXT_mesh_gpu_instancing": {"attributes": attributes}}
+    with pytest.raises(MeshError, match="at most 100000 instances"):
+        gltf.load(tmp_path)
+    gltf.json["accessors"][zeros].update(count=100_000)
+    many = {"bufferView": gltf.view(bytes(12 * 300)), "componentType": 5126}
+    gltf.json["accessors"][0].update(count=300, **many)
+    with pytest.raises(MeshError, match="at most 20000000 faces and vertices in all"):
+        gltf.load(tmp_path)
+
+
+def test_hidden_nodes_and_their_children_are_left_out(tmp_path: Path) -> None:
+    gltf = one_triangle()
+    hidden = {"KHR_node_visibility": {"visible": False}}
+    gltf.json["nodes"] += [{"extensions": hidden, "children": [2]}, {"mesh": 0}]
+    gltf.json["scenes"] = [{"nodes": [0, 1]}]
+    mesh = gltf.load(tmp_path)
+    assert len(mesh.faces) == 1
+    assert mesh.warnings == ("a.glb: left out 1 node(s) of visibility false",)
+    gltf.json["scenes"] = [{"nodes": [1]}]
+    with pytest.raises(MeshError, match=r"a visible mesh .*visibility false"):
+        gltf.load(tmp_path)
+
+
+def skinned_triangle(joints: Any, weights: Any) -> Gltf:
+    """A triangle of two joints: one twice as large, the other at x = 10 and turned about x."""
+    gltf = Gltf()
+    half = math.sqrt(0.5)
+    primitive = triangle(gltf)
+    primitive["attributes"]["JOINTS_0"] = gltf.accessor(joints, "u1")
+    primitive["attributes"]["WEIGHTS_0"] = gltf.accessor(weights)
+    inverse = np.tile(np.eye(4), (2, 1, 1))
+    inverse[0, 0, 3] = -1  # column-major in the file
+    columns = inverse.transpose(0, 2, 1).reshape(2, 16)
+    gltf.scene([primitive], skin=0, translation=[99, 0, 0])
+    gltf.json["nodes"] += [
+        {"scale": [2, 2, 2], "children": [2]},
+        {"translation": [5, 0, 0], "rotation": [half, 0, 0, half]},
+    ]
+    gltf.json["skins"] = [{"joints": [1, 2], "inverseBindMatrices": gltf.accessor(columns)}]
+    return gltf
+
+
+def test_skins_place_their_vertices_by_joints_and_weights(tmp_path: Path) -> None:
+    joints = [(0, 1, 0, 0), (1, 0, 0, 0), (1, 0, 9, 0)]
+    weights = [(1, 0, 0, 0), (0.5, 0.5, 0, 0), (2, 0, 0, 0)]
+    mesh = skinned_triangle(joints, weights).load(tmp_path)
+    np.testing.assert_allclose(mesh.corners[0], [(-2, 0, 0), (6, 0, 0), (10, 0, 2)], atol=1e-6)
+    assert "bind pose" in mesh.warnings[0]
+
+
+def test_a_vertex_of_an_unknown_joint_is_an_error(tmp_path: Path) -> None:
+    with pytest.raises(MeshError, match="expected joints below 2, found 2"):
+        skinned_triangle([(2, 0, 0, 0)] * 3, [(1, 0, 0, 0)] * 3).load(tmp_path)
+
+
+@pytest.mark.parametrize("owner", ["meshes", "nodes"])
+def test_morph_targets_at_their_default_weights(tmp_path: Path, owner: str) -> None:
+    gltf = one_triangle()
+    moved = gltf.accessor([(0, 0, 4), (0, 0, 0), (0, 0, 0)])
+    gltf.json["meshes"][0]["primitives"][0]["targets"] = [{"POSITION": moved}]
+    gltf.json["meshes"][0]["weights"] = [0.25]
+    gltf.json[owner][0]["weights"] = [0.5]
+    mesh = gltf.load(tmp_path)
+    assert mesh.corners[0, 0].tolist() == [0, 0, 2]
+    assert "morph targets, taking their default weights" in mesh.warnings[0]
+
+
+def test_a_length_of_zero_is_that_of_the_file(tmp_path: Path) -> None:
+    data = one_triangle().glb()
+    mesh = read_gltf(data[:8] + bytes(4) + data[12:], "a.glb", NOWHERE)
+    assert len(mesh.faces) == 1
 
 
 @pytest.mark.parametrize("extension", ["EXT_texture_webp", "EXT_texture_avif"])
@@ -317,6 +467,28 @@ def test_specular_glossiness_becomes_diffuse_and_roughness(tmp_path: Path) -> No
     assert "specular-glossiness" in mesh.warnings[0]
 
 
+def test_specular_glossiness_has_the_image_where_the_other_has_factors_only(
+    tmp_path: Path,
+) -> None:
+    gltf = textured()
+    extension = "KHR_materials_pbrSpecularGlossiness"
+    glossy = {"diffuseTexture": {"index": 0}}
+    gltf.json["materials"] = [
+        {"pbrMetallicRoughness": {"metallicFactor": 0}, "extensions": {extension: glossy}}
+    ]
+    mesh = gltf.load(tmp_path)
+    assert "base_color" in mesh.materials[0].maps
+    assert "specular-glossiness" in mesh.warnings[0]
+
+
+def test_compressed_textures_give_way_to_their_fallback(tmp_path: Path) -> None:
+    gltf = textured()
+    extensions = {"KHR_texture_basisu": {"source": 1}}
+    gltf.json["textures"] = [{"source": 0, "extensions": extensions}]
+    gltf.json["extensionsRequired"] = ["KHR_texture_basisu"]
+    assert gltf.load(tmp_path).textures[0].data == image()
+
+
 def test_what_is_lost_is_said(tmp_path: Path) -> None:
     gltf = one_triangle(skin=0, translation=[5, 0, 0])
     primitive = gltf.json["meshes"][0]["primitives"][0]
@@ -362,8 +534,6 @@ def broken(change: str) -> bytes:
         "children": lambda: gltf.json["nodes"][0].update(children="all"),
         "scene": lambda: gltf.json.update(scene=3),
         "matrix": lambda: gltf.json["nodes"][0].update(matrix=[1, 2, 3]),
-        "image": lambda: gltf.json["images"][0].update(bufferView=1),
-        "base64": lambda: gltf.json["images"][0].update(uri="data:;base64,a"),
         "alpha": lambda: gltf.json["materials"][0].update(alphaMode="FOG"),
         "wrap": lambda: [gltf.json.update(samplers=[{"wrapS": 1}]),
                          gltf.json["textures"][0].update(sampler=0)],
@@ -398,8 +568,6 @@ def broken(change: str) -> bytes:
         ("children", "expected node indices in children"),
         ("scene", "scenes: expected an index below 1, found 3"),
         ("matrix", "nodes[0].matrix: expected 16 numbers"),
-        ("image", "images[0]"),
-        ("base64", "images[0]: expected base64"),
         ("alpha", "expected an alphaMode"),
         ("wrap", "expected wraps of"),
     ],
@@ -409,6 +577,23 @@ def test_errors_name_the_place(change: str, expected: str) -> None:
         read_gltf(broken(change), "a.glb", NOWHERE)
     assert str(caught.value).startswith("a.glb: ")
     assert expected in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("spoilt", "said"),
+    [
+        ({"bufferView": 1}, "images[0] (image_0): expected an image that can be decoded"),
+        ({"bufferView": 99}, "bufferViews: expected an index below"),
+        ({"uri": "data:;base64,a"}, "images[0]: expected base64"),
+    ],
+)
+def test_an_unreadable_image_is_left_out(tmp_path: Path, spoilt: dict[str, Any], said: str) -> None:
+    gltf = textured()
+    gltf.json["images"][0] = spoilt
+    mesh = gltf.load(tmp_path)
+    assert mesh.materials[0].maps == {}
+    assert mesh.has_uv.all()
+    assert said in mesh.warnings[0]
 
 
 @pytest.mark.parametrize(

@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+import unicodedata
 from functools import partial
 from pathlib import Path
 
@@ -91,11 +92,39 @@ def test_clamp_sets_the_wrap(tmp_path: Path) -> None:
     assert made.maps["base_color"].wrap == ("clamp", "clamp")
 
 
-@pytest.mark.parametrize("option", ["-s 2 2 1", "-s 2", "-o .5 .5", "-t 1 1 1"])
-def test_options_that_move_uvs_give_a_warning(tmp_path: Path, option: str) -> None:
-    mesh = load(tmp_path, f"map_Kd {option} w.png\n", w_png=image())
-    assert "base_color" in mesh.materials[0].maps
-    assert mesh.warnings[0].startswith(f"a.mtl:2: 'w.png': {option[:2]} is not applied")
+UV_OBJ = "mtllib a.mtl\n" + TRIANGLE + "vt 0 0\nvt 1 0\nvt 0 1\nusemtl m\nf 1/1 2/2 3/3\n"
+UV_OBJ += "usemtl n\nf 3/3 2/2 1/1\n"
+
+
+@pytest.mark.parametrize(
+    ("options", "uvs"),
+    [
+        ("-s 2 3 1", [[0, 0], [2, 0], [0, 3]]),
+        ("-s 2", [[0, 0], [2, 0], [0, 1]]),
+        ("-o .5 .25", [[0.5, 0.25], [1.5, 0.25], [0.5, 1.25]]),
+        ("-o .5 0 0 -s 2 2 1", [[0.5, 0], [2.5, 0], [0.5, 2]]),
+    ],
+)
+def test_options_that_move_uvs_move_those_of_their_material(
+    tmp_path: Path, options: str, uvs: list[list[float]]
+) -> None:
+    mtl = f"newmtl m\nmap_Kd {options} w.png\nnewmtl n\nmap_Kd w.png\n"
+    mesh = load_obj(tmp_path, UV_OBJ, a_mtl=mtl, w_png=image())
+    assert mesh.warnings == ()
+    assert mesh.corner_uvs[0].tolist() == uvs
+    assert mesh.corner_uvs[1].tolist() == [[0, 1], [1, 0], [0, 0]]
+
+
+def test_maps_that_lie_differently_give_a_warning(tmp_path: Path) -> None:
+    mtl = "newmtl m\nnorm n.png\nmap_Kd -s 2 2 w.png\nnewmtl n\n"
+    mesh = load_obj(tmp_path, UV_OBJ, a_mtl=mtl, w_png=image(), n_png=image(color=(128, 128, 255)))
+    assert "-s and -o of its maps differ; those of base_color" in mesh.warnings[0]
+    assert mesh.corner_uvs[0].max() == 2
+
+
+def test_a_turbulence_is_not_applied(tmp_path: Path) -> None:
+    mesh = load(tmp_path, "map_Kd -t 1 1 1 w.png\n", w_png=image())
+    assert mesh.warnings[0].startswith("a.mtl:2: 'w.png': -t is not applied")
 
 
 @pytest.mark.parametrize("option", ["-s 1 1 1", "-o 0", "-t 0.0 0 0", "-blendu on -texres 512"])
@@ -178,6 +207,71 @@ def test_several_libraries(tmp_path: Path, written: str) -> None:
     assert mesh.warnings == ()
 
 
+@pytest.mark.parametrize("cut", ["", " # as scanned", " #2 # as scanned"])
+def test_a_number_sign_may_belong_to_a_name(tmp_path: Path, cut: str) -> None:
+    names = [f"Grey #{n}{cut}" for n in (1, 2)]
+    faces = "".join(f"usemtl {name}\nf 1 2 3\nf 1 3 2\n" for name in names)
+    mtl = "".join(f"newmtl Grey #{n}{cut}\nKd {n - 1} 0 0\n" for n in (1, 2))
+    mesh = load_obj(tmp_path, "mtllib a.mtl\n" + TRIANGLE + faces, a_mtl=mtl)
+    assert [made.base_color[0] for made in mesh.materials] == [0.0, 1.0]
+    assert mesh.face_materials.tolist() == [0, 0, 1, 1]
+    assert mesh.warnings == ()
+
+
+@pytest.mark.parametrize(("used", "made"), [("m # top", "m"), ("m", "m # top")])
+def test_a_comment_after_a_name_is_none_of_it(tmp_path: Path, used: str, made: str) -> None:
+    text = OBJ.replace("usemtl m", f"usemtl {used}\nf 1 3 2\nusemtl m")
+    mesh = load_obj(tmp_path, text, a_mtl=f"newmtl {made}\nKd 1 0 0\n")
+    assert len(mesh.materials) == 1
+    assert mesh.materials[0].base_color[:3] == (1.0, 0.0, 0.0)
+
+
+@pytest.mark.parametrize("name", ["lib #3.mtl", "lib # a #3.mtl", "my #3.mtl"])
+def test_a_library_with_a_number_sign(tmp_path: Path, name: str) -> None:
+    (tmp_path / name).write_text("newmtl m\nmap_Kd wood #2.png # oak\n")
+    (tmp_path / "wood #2.png").write_bytes(image())
+    mesh = load_obj(tmp_path, OBJ.replace("a.mtl", name))
+    assert [texture.name for texture in mesh.textures] == ["wood #2.png"]
+    assert mesh.warnings == ()
+
+
+def test_several_libraries_with_spaces_in_their_names(tmp_path: Path) -> None:
+    (tmp_path / "my lib.mtl").write_text("newmtl m\nKd 1 0 0\n")
+    (tmp_path / "b c.mtl").write_text("newmtl n\n")
+    mesh = load_obj(tmp_path, OBJ.replace("a.mtl", "my lib.mtl  gone lib.mtl b c.mtl"))
+    assert mesh.materials[0].base_color[:3] == (1.0, 0.0, 0.0)
+    assert mesh.warnings == ("a.obj:1: material file 'gone lib.mtl' not found",)
+
+
+def test_images_lie_beside_their_material_file(tmp_path: Path) -> None:
+    (tmp_path / "maps").mkdir()
+    (tmp_path / "maps" / "a.mtl").write_text("newmtl m\nmap_Kd w.png\nnorm n.png\n")
+    (tmp_path / "maps" / "w.png").write_bytes(image())
+    mesh = load_obj(tmp_path, OBJ.replace("a.mtl", "maps/a.mtl"), n_png=image(color=(9, 9, 255)))
+    assert [texture.name for texture in mesh.textures] == ["w.png", "n.png"]
+
+
+@pytest.mark.parametrize("composed_in_mtl", [True, False])
+def test_accents_are_composed_either_way(tmp_path: Path, composed_in_mtl: bool) -> None:
+    names = [unicodedata.normalize("NFC", "Ö.png"), unicodedata.normalize("NFD", "Ö.png")]
+    written, stored = names if composed_in_mtl else reversed(names)
+    (tmp_path / stored).write_bytes(image())
+    assert len(load(tmp_path, f"map_Kd {written.lower()}\n").textures) == 1
+
+
+def test_a_tab_in_a_name(tmp_path: Path) -> None:
+    mesh = load_obj(
+        tmp_path, OBJ.replace("usemtl m", "usemtl m\tn"), a_mtl="newmtl m\tn\nKd 1 0 0\n"
+    )
+    assert mesh.materials[0].name == "m_n"
+    assert mesh.materials[0].base_color[:3] == (1.0, 0.0, 0.0)
+
+
+def test_materials_without_any_library_are_named(tmp_path: Path) -> None:
+    mesh = load_obj(tmp_path, TRIANGLE + "usemtl a\nf 1 2 3\nusemtl b\nf 3 2 1\n")
+    assert mesh.warnings == ("materials 'a', 'b' are in no material file",)
+
+
 @pytest.mark.parametrize("written", ["my lib.mtl", '"my lib.mtl"'])
 def test_a_library_name_with_spaces(tmp_path: Path, written: str) -> None:
     (tmp_path / "my lib.mtl").write_text("newmtl m\nKd 1 0 0\n")
@@ -185,7 +279,14 @@ def test_a_library_name_with_spaces(tmp_path: Path, written: str) -> None:
     assert mesh.materials[0].base_color[:3] == (1.0, 0.0, 0.0)
 
 
-@pytest.mark.parametrize("line", ["Kd 1 nan 0", "Kd red", "d", "map_Kd -bm x w.png"])
+@pytest.mark.parametrize("line", ["Kd 1 nan 0", "Kd -nan(ind) 0 0", "Pr 1.#QNAN", "d inf"])
+def test_a_value_that_is_not_finite_is_left_out(tmp_path: Path, line: str) -> None:
+    mesh = load(tmp_path, line + "\n")
+    assert mesh.warnings == (f"a.mtl:2: {line.split()[0].lower()} is no finite number: left out",)
+    assert mesh.materials[0] == Material("m")
+
+
+@pytest.mark.parametrize("line", ["Kd red", "d", "map_Kd -bm x w.png", "map_Kd -s on w.png"])
 def test_malformed_values_name_the_line(tmp_path: Path, line: str) -> None:
     with pytest.raises(MeshError, match=r"a\.mtl:2: expected"):
         load(tmp_path, line + "\n", w_png=image())
@@ -212,5 +313,5 @@ def test_any_words_give_a_material_or_a_mesh_error(
     ).map(b"\n".join)
 )
 def test_any_bytes_give_materials_or_a_mesh_error(data: bytes) -> None:
-    found = outcome(parse_mtl, data, "a.mtl")
+    found = outcome(parse_mtl, data, "a.mtl", [])
     assert isinstance(found, dict) or str(found).startswith("a.mtl:")

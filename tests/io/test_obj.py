@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+import tracemalloc
 from pathlib import Path
 
 import numpy as np
@@ -117,7 +118,7 @@ def test_a_one_number_uv_has_v_zero() -> None:
         ("v 0 0 1e999\n", "a.obj:1: "),
         ("v 0 0\n", "a.obj:1: expected 3"),
         ("v 0 0 zero\n", "found '0 0 zero'"),
-        ("vt nan 0\n", "a.obj:1: "),
+        ("vt nothing 0\n", "a.obj:1: "),
         ("vt\n", "found 'nothing'"),
         (TRIANGLE + "f 1 2 4\n", "a.obj:4: expected a vertex index up to 3, found 4"),
         (TRIANGLE + "f 1 2 3\nf 1 2 3 9\n", "a.obj:5: expected a vertex index up to 3, found 9"),
@@ -169,3 +170,22 @@ def test_names_of_any_encoding(tmp_path: Path) -> None:
     )
     assert mesh.materials[0].name == "café"
     assert mesh.materials[0].base_color == (1.0, 0.0, 0.0, 1.0)
+
+
+@pytest.mark.parametrize("vt", ["nan nan", "-nan(ind) 0", "0 1.#QNAN", "inf 0", "0 -1.#IND00"])
+def test_a_face_with_unusable_uvs_has_none(tmp_path: Path, vt: str) -> None:
+    text = TRIANGLE + f"vt 0 0\nvt 1 0\nvt {vt}\nvt 0 1\nf 1/1 2/2 3/3\nf 3/4 2/2 1/1\n"
+    mesh = load_obj(tmp_path, text)
+    assert mesh.has_uv.tolist() == [False, True]
+    assert mesh.corner_uvs[1].tolist() == [[0, 1], [1, 0], [0, 0]]
+    assert "a.obj: texture coordinates of 1 face(s) are no finite numbers" in mesh.warnings[0]
+
+
+@pytest.mark.parametrize("names", [" #" * 100_000, " " * 200_000 + "x", "x " * 100_000])
+def test_absurd_names_take_neither_memory_nor_time(tmp_path: Path, names: str) -> None:
+    text = f"mtllib {names}\nusemtl {names}\n" + TRIANGLE + "f 1 2 3\n"
+    tracemalloc.start()
+    load_obj(tmp_path, text)
+    _, peak = tracemalloc.get_traced_memory()
+    tracemalloc.stop()
+    assert peak < 20 * len(text) + 1_000_000

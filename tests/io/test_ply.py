@@ -41,6 +41,77 @@ def test_polygons() -> None:
     assert len(mesh.faces) == 3
 
 
+def test_faces_of_fewer_than_three_corners_are_left_out_with_what_is_theirs() -> None:
+    header = VERTEX + FACE.format(3) + "property list uchar float texcoord\n"
+    body = SQUARE + "2 0 1 4 9 9 9 9\n3 0 1 2 6 0 0 1 0 1 1\n0 0\n"
+    mesh = read(text(header, body))
+    assert mesh.faces.tolist() == [[0, 1, 2]]
+    assert mesh.corner_uvs[0].tolist() == [[0, 0], [1, 0], [1, 1]]
+    assert mesh.warnings == ("a.ply: left out 2 face(s) of fewer than three corners",)
+
+
+@pytest.mark.parametrize("body", ["5 0 1 2 3 -1", "9 0 1 2 3 -1 1 2 -1 -1", "4 0 1 2 3"])
+def test_triangle_strips(body: str) -> None:
+    strips = "element tristrips 1\nproperty list int int vertex_indices\n"
+    mesh = read(text(VERTEX + strips, SQUARE + body))
+    assert mesh.faces.tolist() == [[0, 1, 2], [1, 3, 2]]
+
+
+def test_strips_one_after_the_other_begin_anew() -> None:
+    strips = "element tristrips 2\nproperty list int int vertex_indices\n"
+    mesh = read(text(VERTEX + strips, SQUARE + "7 0 1 2 -1 3 2 1\n3 1 2 3"))
+    assert mesh.faces.tolist() == [[0, 1, 2], [3, 2, 1], [1, 2, 3]]
+
+
+def test_a_strip_longer_than_any_polygon() -> None:
+    strip = np.arange(70_000) % 4
+    strips = "element tristrips 1\nproperty list int int vertex_indices\n"
+    data = text(VERTEX + strips, "", "binary_little_endian")
+    data += np.array(CORNERS, "<f4").tobytes()
+    data += struct.pack("<i", len(strip)) + strip.astype("<i4").tobytes()
+    assert len(read(data).faces) == len(strip) - 2
+
+
+@pytest.mark.parametrize(
+    ("owner", "name"), [("vertex", "red"), ("vertex", "diffuse_red"), ("face", "red")]
+)
+def test_colors_are_left_out_by_name(owner: str, name: str) -> None:
+    color = f"property uchar {name}\n"
+    vertex, face = (color if owner == each else "" for each in ("vertex", "face"))
+    body = SQUARE.replace("\n", " 7\n") if vertex else SQUARE
+    mesh = read(text(VERTEX + vertex + FACE.format(1) + face, f"{body}3 0 1 2 7\n"))
+    assert mesh.warnings == (f"a.ply: left out {owner} colors",)
+
+
+@pytest.mark.parametrize("end", ["\n", "\r\n", "\r"])
+def test_the_header_ends_at_a_line_of_its_own(end: str) -> None:
+    header = "comment end_header of a tool\n" + VERTEX + FACE.format(1)
+    data = text(header, SQUARE + "3 0 1 2\n").replace(b"\n", end.encode())
+    assert len(read(b"\xef\xbb\xbf" + data).faces) == 1
+
+
+@pytest.mark.parametrize("key", ["texture_file", "texture:", "TextureFile:", "texture"])
+def test_other_comments_that_name_an_image(tmp_path: Path, key: str) -> None:
+    data = text(f"comment {key} my wood.png\n" + VERTEX + FACE.format(1), SQUARE + "3 0 1 2\n")
+    assert read(data).warnings == ("a.ply: image 'my wood.png' not found",)
+    (tmp_path / "my wood.png").write_bytes(image())
+    assert len(read(data, Folder(tmp_path)).textures) == 1
+
+
+def test_an_unreadable_image_is_left_out(tmp_path: Path) -> None:
+    (tmp_path / "w.png").write_bytes(b"no image")
+    data = text("comment TextureFile w.png\n" + VERTEX + FACE.format(1), SQUARE + "3 0 1 2\n")
+    assert "w.png: expected an image" in read(data, Folder(tmp_path)).warnings[0]
+
+
+def test_a_face_with_unusable_uvs_has_none() -> None:
+    header = VERTEX + "property float s\nproperty float t\n" + FACE.format(2)
+    body = "0 0 0 0 0\n1 0 0 1 0\n1 1 0 1 1\n0 1 0 nan nan\n3 0 1 2\n3 0 2 3\n"
+    mesh = read(text(header, body))
+    assert mesh.has_uv.tolist() == [True, False]
+    assert "texture coordinates of 1 face(s) are no finite numbers" in mesh.warnings[0]
+
+
 @pytest.mark.parametrize(("format", "order"), [("little", "<"), ("big", ">")])
 def test_binary_with_columns_we_do_not_know(format: str, order: str) -> None:
     header = "comment made by hand\n" + VERTEX + "property uchar quality\n" + FACE.format(1)
@@ -96,7 +167,11 @@ def test_vertex_colors_are_left_out_with_a_warning() -> None:
             "face 0: expected vertex indices below",
         ),
         (text(VERTEX + FACE.format(2), SQUARE + "3 0 1 2 4 0 1 2 -1"), "face 1: expected vertex"),
-        (text(VERTEX + FACE.format(1), SQUARE + "2 0 1"), "face 0: expected three corners"),
+        (
+            text(VERTEX + "property float x\n" + FACE.format(1), SQUARE),
+            "properties of vertex: expected different names, found 'x' twice",
+        ),
+        (text(VERTEX + VERTEX + FACE.format(1), SQUARE), "elements: expected different names"),
         (text(VERTEX + FACE.format(1), SQUARE + "-3 0 1"), "face 0: expected numbers"),
         (text(VERTEX + FACE.format(0), "0 0 0 0 nan 0 0 0 0 1 1 1"), "vertex 1: expected finite"),
         (text(VERTEX + FACE.format(0), "0 0 0 0 zero 0"), "vertex 1: expected numbers"),

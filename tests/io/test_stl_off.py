@@ -64,12 +64,16 @@ def test_off(data: bytes) -> None:
     ("data", "expected"),
     [
         (b"", "a.stl: expected text"),
-        (binary_stl(CORNERS, b"")[:-1], "a.stl: expected text, or facets"),
+        (binary_stl(CORNERS, b"")[:-1], "a.stl: expected 1 facets of 50 bytes, found 0"),
+        (
+            TEXT_STL.replace(b"  endloop\n", b"  vertex 0 0 1\n" * 3 + b"  endloop\n"),
+            "a.stl:10: expected three vertices in a loop, found 6",
+        ),
         (binary_stl([*CORNERS[:2], [0, float("nan"), 0]]), "a.stl: facet 0: expected finite"),
         (TEXT_STL.replace(b"vertex 1", b"vertex inf"), "a.stl:5: expected 3"),
         (TEXT_STL.replace(b"vertex 1 0 0", b"vertex 1 0"), "a.stl:5: expected 3"),
         (TEXT_STL.replace(b"vertex 1 0 0\n", b""), "a.stl:6: expected three vertices"),
-        (TEXT_STL.split(b"   vertex 0 1")[0], "expected three vertices a facet"),
+        (TEXT_STL.split(b"   vertex 0 1")[0], "expected an endloop after three vertices"),
     ],
 )
 def test_stl_errors_name_the_place(data: bytes, expected: str) -> None:
@@ -89,17 +93,69 @@ def test_stl_errors_name_the_place(data: bytes, expected: str) -> None:
         (OFF.replace(b"4 1 0", b"999999999 1 0"), "a.off: expected 999999999 vertices, found 5"),
         (OFF.replace(b"4 1 0", b"4 2 0"), "expected 2 faces, found 1 before the end"),
         (OFF.replace(b"1 1 0\n", b"1 nan 0\n"), "a.off:6: expected 3 or more finite numbers"),
-        (OFF.replace(b"2 3\n", b"2 4\n"), "a.off:8: expected a count from 3"),
+        (OFF.replace(b"2 3\n", b"2 4\n"), "a.off:8: expected a count from 1"),
         (OFF.replace(b"2 3\n", b"2 -1\n"), "a.off:8: "),
         (OFF.replace(b"2 3\n", b"2\n"), "a.off:8: "),
         (OFF.replace(b"2 3\n", b"2 x\n"), "a.off:8: "),
-        (OFF.replace(b"4 0 1", b"2 0 1"), "a.off:8: "),
+        (OFF.replace(b"4 0 1", b"-4 0 1"), "a.off:8: "),
     ],
 )
 def test_off_errors_name_the_line(data: bytes, expected: str) -> None:
     with pytest.raises(MeshError) as caught:
         off(data)
     assert expected in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("data", "warning"),
+    [
+        (binary_stl(CORNERS) + b"\0\0", "left out 2 bytes after the facets"),
+        (binary_stl(CORNERS).replace(b"\1\0\0\0", bytes(4), 1), "the header says 0 facets, 1 are"),
+        (binary_stl(CORNERS)[:-1] + b"\x80", "left out facet colors"),
+        (binary_stl(CORNERS, b"COLOR=\1\2\3\4"), "left out facet colors"),
+    ],
+)
+def test_binary_stl_as_it_is_written(data: bytes, warning: str) -> None:
+    mesh = stl(data)
+    assert mesh.corners.tolist() == [CORNERS]
+    assert len(mesh.warnings) == 1
+    assert warning in mesh.warnings[0]
+
+
+def test_text_stl_with_a_byte_order_mark() -> None:
+    assert stl(b"\xef\xbb\xbf" + TEXT_STL).corners.tolist() == [CORNERS]
+
+
+def test_off_texture_coordinates() -> None:
+    rows = b"0 0 0 0 0\n1 0 0 1 0\n1 1 0 1 1\n0 1 0 nan 1\n"
+    mesh = off(b"STOFF\n4 2 0\n" + rows + b"3 0 1 2\n3 0 2 3\n")
+    assert mesh.corner_uvs[0].tolist() == [[0, 0], [1, 0], [1, 1]]
+    assert mesh.has_uv.tolist() == [True, False]
+    assert len(mesh.warnings) == 1
+    mesh = off(b"STCNOFF\n3 1 0\n" + b"0 0 0 0 0 1 9 9 9 9 .5 .25\n" * 3 + b"3 0 1 2\n")
+    assert mesh.corner_uvs[0].tolist() == [[0.5, 0.25]] * 3
+
+
+@pytest.mark.parametrize(
+    ("data", "what"),
+    [
+        (OFF.replace(b"OFF", b"COFF").replace(b" 0\n", b" 0 255 0 0 255\n"), "vertex colors"),
+        (OFF.replace(b"1 0 0\n", b"1 0 0 255 0 0\n"), "vertex colors"),
+        (OFF.replace(b"0 1 2 3", b"0 1 2 3 255 0 0"), "face colors"),
+        (
+            OFF.replace(b"4 1 0", b"4 2 0").replace(b"4 0 1 2", b"2 0 1\n4 0 1 2"),
+            "faces of fewer than three corners",
+        ),
+    ],
+)
+def test_what_off_loses_is_said(data: bytes, what: str) -> None:
+    mesh = off(data)
+    assert len(mesh.faces) == 2
+    assert mesh.warnings == (f"a.off: left out {what}",)
+
+
+def test_normals_of_off_are_no_loss() -> None:
+    assert off(OFF.replace(b"OFF", b"NOFF").replace(b" 0\n", b" 0 0 0 1\n")).warnings == ()
 
 
 @given(st.binary(max_size=60), st.integers(0, 150))

@@ -18,7 +18,7 @@ from nispcodec.core.asset import Material, Texture, TexturedMesh, TextureMap
 from nispcodec.core.errors import MeshError, NispError
 from nispcodec.core.texture import linear_to_srgb
 from nispcodec.io.load import load_mesh
-from nispcodec.io.save import SUFFIXES, mesh_paths, write_mesh
+from nispcodec.io.save import SUFFIXES, losses, mesh_paths, write_mesh
 from nispcodec.io.write.glb import glb_bytes
 from nispcodec.io.write.obj import obj_files
 from tests import tiny
@@ -250,6 +250,76 @@ def test_ply_doubles_seams_only(mesh: TexturedMesh, tmp_path: Path) -> None:
     header = (tmp_path / "out.ply").read_bytes().split(b"end_header\n")[0].decode()
     corners = {(p, t) for p, t in zip(mesh.faces.flat, mesh.uv_faces.flat, strict=True)}
     assert f"element vertex {len(corners)}\n" in header
+
+
+def test_ply_names_its_images(mesh: TexturedMesh, tmp_path: Path) -> None:
+    written = write_mesh(mesh, tmp_path / "out.ply")
+    assert [path.name for path in written] == ["out_a_b.png", "out.ply"]
+    again = load_mesh(written[-1])
+    assert again.warnings == ()
+    assert [texture.data for texture in again.textures] == [mesh.textures[0].data]
+    shown = [bool(again.materials[number].maps) for number in again.face_materials]
+    assert shown == [True, True, False, False]
+
+
+def lost(mesh: TexturedMesh, suffix: str, *maps: TextureMap, **material: Any) -> str:
+    slots = ("base_color", "occlusion")
+    made = Material(maps=dict(zip(slots, maps, strict=False)), **material)
+    return " | ".join(losses(replace(mesh, materials=(made, Material())), f"x{suffix}"))
+
+
+PLAIN = TextureMap(0)
+
+
+@pytest.mark.parametrize(
+    ("suffix", "maps", "material", "said"),
+    [
+        (".obj", (PLAIN, PLAIN), {}, "x.obj: left out maps: occlusion"),
+        (".ply", (PLAIN, PLAIN), {}, "x.ply: left out maps: occlusion"),
+        (".obj", (PLAIN,), {"alpha_mode": "mask"}, "x.obj: left out alpha modes: MTL has none"),
+        (".ply", (PLAIN,), {"alpha_mode": "blend"}, "x.ply: left out alpha modes: PLY has none"),
+        (".obj", (TextureMap(0, ("mirror", "repeat")),), {}, "x.obj: left out wraps"),
+        (".ply", (TextureMap(0, ("clamp", "clamp")),), {}, "x.ply: left out wraps"),
+        (".obj", (TextureMap(0, filter="nearest"),), {}, "x.obj: left out the filter nearest"),
+        (".ply", (), {"metallic": 1.0}, "x.ply: left out factors of materials"),
+        (".stl", (), {}, "x.stl: left out texture coordinates, materials and images"),
+    ],
+)
+def test_what_a_format_cannot_hold_is_said(
+    mesh: TexturedMesh, suffix: str, maps: tuple[TextureMap, ...], material: Any, said: str
+) -> None:
+    assert lost(mesh, suffix, *maps, **material).startswith(said)
+    assert lost(mesh, ".glb", *maps, **material) == ""
+
+
+def test_what_a_format_holds_is_no_loss(mesh: TexturedMesh) -> None:
+    assert lost(mesh, ".obj", TextureMap(0, ("clamp", "clamp")), metallic=0.5) == ""
+    assert lost(mesh, ".obj", PLAIN, base_color=(1, 1, 1, 0.5), alpha_mode="blend") == ""
+    assert lost(mesh, ".ply", PLAIN) == ""
+    assert lost(mesh, ".glb", PLAIN, PLAIN) == ""
+
+
+def test_images_that_glb_converts_are_said(mesh: TexturedMesh) -> None:
+    avif = tuple(replace(each, mime="image/avif") for each in mesh.textures)
+    assert "converted to PNG" in losses(replace(mesh, textures=avif), "x.glb")[0]
+
+
+@pytest.mark.parametrize("suffix", [".obj", ".ply", ".glb"])
+def test_names_that_are_no_text_are_kept_as_bytes(
+    mesh: TexturedMesh, tmp_path: Path, suffix: str
+) -> None:
+    named = replace(mesh, name="\udcff")
+    again = load_mesh(write_mesh(named, tmp_path / f"K\udcf6rper{suffix}")[-1])
+    assert len(again.faces) == 4
+
+
+def test_names_that_no_line_or_file_system_holds_are_refused(
+    mesh: TexturedMesh, tmp_path: Path
+) -> None:
+    for name in ("a\nusemtl b.obj", "a\0b/c.glb"):
+        with pytest.raises(MeshError, match="without control characters"):
+            write_mesh(mesh, tmp_path / name)
+    assert not list(tmp_path.iterdir())
 
 
 @pytest.mark.parametrize("suffix", [".obj", ".ply"])

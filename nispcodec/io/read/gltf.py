@@ -2,18 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass, field
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from nispcodec.core.arrays import Float64Array, Int32Array, Int64Array
+from nispcodec.core.arrays import Float64Array, Int64Array
 from nispcodec.core.asset import TexturedMesh
 from nispcodec.core.errors import MeshError
 from nispcodec.io.folder import Folder
+from nispcodec.io.read.coordinates import without_unusable
 from nispcodec.io.read.gltf_buffers import Buffers, split_glb
 from nispcodec.io.read.gltf_json import Element, parse_json
 from nispcodec.io.read.gltf_materials import GltfMaterials, UvSource
+from nispcodec.io.read.gltf_nodes import Shown, shown_meshes, skinned
 
 _READABLE = {
     "KHR_texture_transform",
@@ -21,12 +23,16 @@ _READABLE = {
     "KHR_lights_punctual",
     "EXT_texture_webp",
     "EXT_texture_avif",
+    "EXT_mesh_gpu_instancing",
+    "KHR_node_visibility",
+    "KHR_texture_basisu",
 }
 _COMPRESSED = {
     "KHR_draco_mesh_compression",
     "EXT_meshopt_compression",
     "KHR_meshopt_compression",
 }
+_SKINNING = ("JOINTS_0", "WEIGHTS_0")
 _TRIANGLES, _STRIP, _FAN = 4, 5, 6
 # Instances multiply what a small file holds: no more vertices or faces than this.
 LARGEST = 20_000_000
@@ -44,10 +50,10 @@ def read_gltf(data: bytes, name: str, folder: Folder) -> TexturedMesh:
     warnings = _things_left_out(root)
     buffers = Buffers(root, binary, folder)
     scene = _Scene(buffers, GltfMaterials(root, buffers, folder, warnings), warnings)
-    for number, (mesh, matrix) in enumerate(_instances(root)):
-        for primitive in mesh.entries("primitives"):
-            scene.add(primitive, matrix, number)
-    return scene.mesh()
+    for number, shown in enumerate(shown_meshes(root, buffers, warnings)):
+        for primitive in shown.mesh.entries("primitives"):
+            scene.add(primitive, shown, number)
+    return scene.mesh(root)
 
 
 def _expect_readable(root: Element) -> None:
@@ -64,66 +70,6 @@ def _expect_readable(root: Element) -> None:
 def _things_left_out(root: Element) -> list[str]:
     kinds = {"animations": "animations", "skins": "skins, taking the bind pose"}
     return [f"{root.file}: left out {what}" for key, what in kinds.items() if root.entries(key)]
-
-
-def _instances(root: Element) -> Iterator[tuple[Element, Float64Array]]:
-    """Each mesh of the scene with its world matrix (4, 4), depth first."""
-    stack = [(index, np.eye(4)) for index in reversed(_root_nodes(root))]
-    seen = set()
-    while stack:
-        index, parent = stack.pop()
-        node = root.entry("nodes", index)
-        if index in seen:
-            node.fail("a node with one parent", "several, or a cycle")
-        seen.add(index)
-        matrix = parent @ _local_matrix(node)
-        mesh = node.optional("mesh")
-        if mesh is not None:
-            # A skin replaces the transform of its node.
-            skinned = node.get("skin") is not None
-            yield root.entry("meshes", mesh), np.eye(4) if skinned else matrix
-        children = _indices(node, "children")
-        stack.extend((child, matrix) for child in reversed(children))
-
-
-def _root_nodes(root: Element) -> list[int]:
-    if root.entries("scenes"):
-        return _indices(root.entry("scenes", root.integer("scene", 0)), "nodes")
-    nodes = root.entries("nodes")
-    children = {child for node in nodes for child in _indices(node, "children")}
-    return [index for index in range(len(nodes)) if index not in children]
-
-
-def _indices(owner: Element, key: str) -> list[int]:
-    array = owner.get(key)
-    values = [] if array is None else array.value
-    if not isinstance(values, list) or not all(type(value) is int for value in values):
-        owner.fail(f"node indices in {key}", values)
-    return values
-
-
-def _local_matrix(node: Element) -> Float64Array:
-    if node.get("matrix") is not None:
-        flat = node.numbers("matrix", np.eye(4).reshape(-1).tolist())
-        return np.array(flat).reshape(4, 4).T
-    x, y, z, w = node.numbers("rotation", (0.0, 0.0, 0.0, 1.0))
-    matrix = np.eye(4)
-    matrix[:3, :3] = _rotation(np.array([x, y, z, w])) * node.numbers("scale", (1.0, 1.0, 1.0))
-    matrix[:3, 3] = node.numbers("translation", (0.0, 0.0, 0.0))
-    return matrix
-
-
-def _rotation(quaternion: Float64Array) -> Float64Array:
-    """(x, y, z, w) -> (3, 3); exporters round, so it need not have length one."""
-    length = np.linalg.norm(quaternion)
-    x, y, z, w = quaternion / (length if length > 0 else 1.0)
-    return np.array(
-        [
-            [1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
-            [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
-            [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)],
-        ]
-    )
 
 
 @dataclass
@@ -157,67 +103,121 @@ class _Scene:
         self._face_materials: list[Int64Array] = []
         self._count = 0
 
-    def add(self, primitive: Element, matrix: Float64Array, instance: int) -> None:
-        """Add one primitive; `instance` numbers the matrices."""
+    def add(self, primitive: Element, shown: Shown, number: int) -> None:
+        """Add one primitive of a node; `number` counts the nodes."""
         attributes = primitive.need("attributes")
         mode = primitive.integer("mode", _TRIANGLES)
         if mode not in (_TRIANGLES, _STRIP, _FAN) or attributes.get("POSITION") is None:
             self._warn(f"{primitive.place}: left out, not a primitive of triangles")
             return
-        first, count = self._place_positions(attributes, matrix, instance)
-        faces = _triangles(self._corner_indices(primitive, count), mode, primitive)
-        if np.linalg.det(matrix[:3, :3]) < 0:
-            faces = faces[:, [0, 2, 1]]
+        first, count = self._place_positions(primitive, shown, number)
+        once = _triangles(self._corner_indices(primitive, count), mode, primitive)
+        self._expect_moderate(primitive, len(shown.matrices) * len(once))
+        faces = np.concatenate([np.zeros((0, 3), np.int64), *_turned(once, shown)])
+        starts = first + count * np.arange(len(shown.matrices))
         material, source = self._materials.use(primitive.optional("material"))
-        uv_first = self._place_uvs(attributes, source, count)
-        self._faces.append(faces + first)
+        uv_first = self._place_uvs(attributes, source, count, material)
+        self._faces.append(faces + np.repeat(starts, len(once))[:, None])
         self._uv_faces.append(np.full_like(faces, -1) if uv_first is None else faces + uv_first)
         self._face_materials.append(np.full(len(faces), material))
         self._count += len(faces)
-        self._expect_moderate(primitive)
         self._warn_of_losses(primitive, attributes)
 
-    def mesh(self) -> TexturedMesh:
+    def mesh(self, root: Element) -> TexturedMesh:
+        """All that was added; the file's `root` names the place in messages."""
+        if not self._count:
+            root.fail("a visible mesh of triangles in the scene", "; ".join(self._warnings))
+        uv_faces = np.concatenate(self._uv_faces)
+        uvs, uv_faces = without_unusable(self._uvs.table(2), uv_faces, root.file, self._warnings)
         return TexturedMesh(
             positions=self._positions.table(3),
-            faces=_stacked(self._faces, (0, 3)),
-            uvs=self._uvs.table(2),
-            uv_faces=_stacked(self._uv_faces, (0, 3)),
-            face_materials=_stacked(self._face_materials, (0,)),
+            faces=np.concatenate(self._faces).astype(np.int32),
+            uvs=uvs,
+            uv_faces=uv_faces.astype(np.int32),
+            face_materials=np.concatenate(self._face_materials).astype(np.int32),
             materials=self._materials.materials,
             textures=tuple(self._materials.shelf.textures),
             warnings=tuple(self._warnings),
         )
 
-    def _place_positions(
-        self, attributes: Element, matrix: Float64Array, instance: int
-    ) -> tuple[int, int]:
-        """First row and number of rows; primitives of an instance often share an accessor."""
+    def _place_positions(self, primitive: Element, shown: Shown, number: int) -> tuple[int, int]:
+        """First row and number of rows; primitives of a node often share an accessor."""
+        attributes = primitive.need("attributes")
         accessor = attributes.integer("POSITION")
+        skinning = [attributes.optional(each) for each in _SKINNING]
+        morphed = primitive.path if any(shown.weights) else ""
+        key = (number, accessor, *skinning, morphed)
         local = self._buffers.numbers(accessor, 3)
-        key = (instance, accessor)
+        self._expect_moderate(primitive, len(shown.matrices) * len(local))
         if key not in self._positions.starts:
-            identity = np.array_equal(matrix, np.eye(4))
-            world = local if identity else local @ matrix[:3, :3].T + matrix[:3, 3]
+            local = self._morphed(primitive, local, shown.weights)
+            if shown.skin is not None:
+                local = self._skinned(attributes, local, shown.skin)
+            world = _transformed(local, shown.matrices)
             if not np.isfinite(world).all():
                 attributes.fail("finite world coordinates", "overflow in node transforms")
             self._positions.add(key, world)
         return self._positions.starts[key], len(local)
 
-    def _place_uvs(self, attributes: Element, source: UvSource, count: int) -> int | None:
+    def _morphed(
+        self, primitive: Element, local: Float64Array, weights: Sequence[float]
+    ) -> Float64Array:
+        """Positions (n, 3) with the morph targets at the weights of the file."""
+        for target, weight in zip(primitive.entries("targets"), weights, strict=False):
+            accessor = target.optional("POSITION")
+            if accessor is None or not weight:
+                continue
+            moves = self._buffers.numbers(accessor, 3)
+            if len(moves) != len(local):
+                target.fail(f"{len(local)} positions", len(moves))
+            local = local + weight * moves
+        return local
+
+    def _skinned(
+        self, attributes: Element, local: Float64Array, matrices: Float64Array
+    ) -> Float64Array:
+        """Positions (n, 3) by the first four joints of each; unchanged without joints."""
+        if attributes.get("JOINTS_0") is None or attributes.get("WEIGHTS_0") is None:
+            return local
+        if attributes.get("JOINTS_1") is not None:
+            self._warn(f"{attributes.file}: left out joints beyond four a vertex")
+        joints = self._buffers.integers(attributes.integer("JOINTS_0"), 4)
+        weights = self._buffers.numbers(attributes.integer("WEIGHTS_0"), 4)
+        if not len(joints) == len(weights) == len(local):
+            attributes.fail(f"{len(local)} joints and weights", (len(joints), len(weights)))
+        used = joints[weights != 0]
+        if used.size and used.max() >= len(matrices):
+            attributes.fail(f"joints below {len(matrices)}", int(used.max()))
+        return skinned(local, matrices, np.where(weights != 0, joints, 0), weights)
+
+    def _place_uvs(
+        self, attributes: Element, source: UvSource, count: int, material: int
+    ) -> int | None:
+        if attributes.get(f"TEXCOORD_{source.texcoord}") is None:
+            source = self._other_source(attributes, source, material)
         accessor = attributes.optional(f"TEXCOORD_{source.texcoord}")
         if accessor is None:
             return None
-        stored = self._buffers.numbers(accessor, 2)
+        stored = self._buffers.numbers(accessor, 2, finite=False)
         if len(stored) != count:
             attributes.fail(f"{count} texture coordinates", len(stored))
         key = (accessor, source)
         if key not in self._uvs.starts:
             uvs = source.apply(stored)
-            if not np.isfinite(uvs).all():
-                attributes.fail("finite texture coordinates", "overflow in the texture transform")
             self._uvs.add(key, np.column_stack([uvs[:, 0], 1.0 - uvs[:, 1]]))
         return self._uvs.starts[key]
+
+    def _other_source(self, attributes: Element, source: UvSource, material: int) -> UvSource:
+        """The first texture coordinates in place of missing ones, with a warning."""
+        maps = self._materials.materials[material].maps
+        found = attributes.get("TEXCOORD_0") is not None
+        if maps:
+            instead = "TEXCOORD_0 is taken" if found else "its maps are not shown"
+            self._warn(
+                f"{attributes.place}: no TEXCOORD_{source.texcoord}, which the material looks up: "
+                f"{instead}"
+            )
+        return replace(source, texcoord=0)
 
     def _corner_indices(self, primitive: Element, count: int) -> Int64Array:
         accessor = primitive.optional("indices")
@@ -228,8 +228,8 @@ class _Scene:
             primitive.fail(f"vertex indices below {count}", int(indices.max()))
         return indices
 
-    def _expect_moderate(self, primitive: Element) -> None:
-        largest = max(self._count, self._positions.count, self._uvs.count)
+    def _expect_moderate(self, primitive: Element, more: int) -> None:
+        largest = max(self._count, self._positions.count, self._uvs.count) + more
         if largest > LARGEST:
             raise MeshError(
                 f"{primitive.place}: expected at most {LARGEST} faces and vertices in all, "
@@ -240,11 +240,30 @@ class _Scene:
         if attributes.get("COLOR_0") is not None:
             self._warn(f"{primitive.file}: left out vertex colors")
         if primitive.get("targets") is not None:
-            self._warn(f"{primitive.file}: left out morph targets")
+            self._warn(f"{primitive.file}: left out morph targets, taking their default weights")
 
     def _warn(self, warning: str) -> None:
         if warning not in self._warnings:
             self._warnings.append(warning)
+
+
+def _transformed(local: Float64Array, matrices: Float64Array) -> Float64Array:
+    """Points (n, 3) by each matrix (k, 4, 4), one instance after the other: (k n, 3)."""
+    if np.array_equal(matrices, np.eye(4)[None]):
+        return local
+    with np.errstate(over="ignore", invalid="ignore"):
+        world = local @ matrices[:, :3, :3].transpose(0, 2, 1) + matrices[:, None, :3, 3]
+    return world.reshape(-1, 3)
+
+
+def _turned(faces: Int64Array, shown: Shown) -> Iterator[Int64Array]:
+    """The faces of each instance, the other way round where it is mirrored."""
+    matrices = shown.matrices if shown.skin is None else shown.skin
+    mirrored = np.linalg.det(matrices[:, :3, :3]) < 0
+    if shown.skin is not None:
+        mirrored = np.array([mirrored.size > 0 and bool(mirrored.all())])
+    for each in mirrored.tolist():
+        yield faces[:, [0, 2, 1]] if each else faces
 
 
 def _triangles(indices: Int64Array, mode: int, primitive: Element) -> Int64Array:
@@ -258,7 +277,3 @@ def _triangles(indices: Int64Array, mode: int, primitive: Element) -> Int64Array
         return indices[np.stack([first + 1, first + 2, np.zeros_like(first)], axis=1)]
     odd = first % 2
     return indices[np.stack([first, first + 1 + odd, first + 2 - odd], axis=1)]
-
-
-def _stacked(arrays: list[Int64Array], shape: tuple[int, ...]) -> Int32Array:
-    return np.concatenate([np.zeros(shape, dtype=np.int64), *arrays]).astype(np.int32)

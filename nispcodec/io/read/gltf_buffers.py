@@ -22,7 +22,7 @@ _COMPONENTS: dict[int, np.dtype[Any]] = {
     5125: np.dtype("<u4"),
     5126: np.dtype("<f4"),
 }
-_WIDTHS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3}
+_WIDTHS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4, "MAT4": 16}
 _JSON_CHUNK, _BINARY_CHUNK = 0x4E4F534A, 0x004E4942
 # An accessor without a buffer view is all zeros and costs a file nothing: no more than this.
 _MOST_ZEROS = 10_000_000
@@ -40,11 +40,13 @@ def split_glb(data: bytes, name: str) -> tuple[bytes, bytes | None]:
     version, length = struct.unpack_from("<II", data, 4)
     if version != 2:
         raise MeshError(f"{name}: expected GLB version 2, found {version}")
+    length = length or len(data)  # which those who stream do not know when they write it
     if length > len(data):
         raise MeshError(f"{name}: expected {length} bytes, found {len(data)}: file cut short")
     chunks = _chunks(data[:length], name)
     if not chunks or chunks[0][0] != _JSON_CHUNK:
-        raise MeshError(f"{name}: expected a JSON chunk first, found {len(chunks)} other chunks")
+        found = f"chunk type {chunks[0][0]:#x}" if chunks else "no chunk"
+        raise MeshError(f"{name}: expected a JSON chunk first, found {found}")
     binary = next((chunk for kind, chunk in chunks if kind == _BINARY_CHUNK), None)
     return chunks[0][1], binary
 
@@ -101,29 +103,34 @@ class Buffers:
             view.fail(f"an end within {len(buffer)} bytes", offset + length)
         return memoryview(buffer)[offset : offset + length]
 
-    def numbers(self, index: int, width: int) -> Float64Array:
-        """Accessor `index` as finite numbers (n, width) float64.
+    def numbers(self, index: int, width: int, finite: bool = True) -> Float64Array:
+        """Accessor `index` as numbers (n, width) float64, which must be `finite` or need not.
 
         Normalized integers become fractions (glTF 2.0, 3.6.2.2).
         """
         accessor = self._root.entry("accessors", index)
         values = self._values(accessor, width)
-        finite = np.isfinite(values).all(axis=1)
-        if not finite.all():
-            element = int(finite.argmin())
+        usable = np.isfinite(values).all(axis=1)
+        if finite and not usable.all():
+            element = int(usable.argmin())
             accessor.fail(f"finite numbers in element {element}", values[element].tolist())
-        numbers = values.astype(np.float64)
+        with np.errstate(invalid="ignore"):  # signaling NaN
+            numbers = values.astype(np.float64)
         if accessor.flag("normalized") and values.dtype.kind in "iu":
             numbers = np.maximum(numbers / np.iinfo(values.dtype).max, -1.0)
         return numbers
 
     def indices(self, index: int) -> Int64Array:
         """Accessor `index`, which holds unsigned integers, as (n,) int64."""
+        return self.integers(index, 1)[:, 0]
+
+    def integers(self, index: int, width: int) -> Int64Array:
+        """Accessor `index`, which holds unsigned integers, as (n, width) int64."""
         accessor = self._root.entry("accessors", index)
-        values = self._values(accessor, 1)
+        values = self._values(accessor, width)
         if values.dtype.kind != "u":
             accessor.fail("unsigned integers", values.dtype.name)
-        return values.astype(np.int64)[:, 0]
+        return values.astype(np.int64)
 
     def _buffer(self, index: int) -> bytes:
         if index not in self._read:

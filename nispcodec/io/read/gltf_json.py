@@ -98,10 +98,17 @@ class Element:
         member = self.get(key)
         if member is None:
             return tuple(default)
-        values = tuple(Element(item, self.file, member.path)._number() for item in member._list())
+        values = self.numbers_of_any_count(key)
         if len(values) != len(default):
             member.fail(f"{len(default)} numbers", member.value)
         return values
+
+    def numbers_of_any_count(self, key: str) -> tuple[float, ...]:
+        """The array `key` of finite numbers, empty when it is missing."""
+        member = self.get(key)
+        items = [] if member is None else member._list()
+        path = self.path if member is None else member.path
+        return tuple(Element(item, self.file, path)._number() for item in items)
 
     def text(self, key: str, default: str) -> str:
         """The string `key`."""

@@ -4,18 +4,20 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from urllib.parse import unquote
 
 import numpy as np
 
 from nispcodec.core.arrays import Float64Array
 from nispcodec.core.asset import Material, TextureMap
+from nispcodec.core.errors import MeshError
 from nispcodec.core.slots import BY_NAME, SLOT_TABLE
 from nispcodec.io.folder import Folder
 from nispcodec.io.images import TextureShelf
 from nispcodec.io.read.gltf_buffers import Buffers, read_uri
 from nispcodec.io.read.gltf_json import Element
+from nispcodec.io.read.names import material_name
 
 _WRAPS = {10497: "repeat", 33071: "clamp", 33648: "mirror"}
 _FILTERS = {9728: "nearest", 9729: "linear"}
@@ -36,14 +38,18 @@ class UvSource:
     scale: tuple[float, ...] = (1.0, 1.0)
 
     def apply(self, uvs: Float64Array) -> Float64Array:
-        """UVs (n, 2) as in the file -> (n, 2) as looked up; both have their origin top-left."""
+        """UVs (n, 2) as in the file -> (n, 2) as looked up; both have their origin top-left.
+
+        NaN or infinity where they overflow.
+        """
         if self.offset == (0.0, 0.0) and not self.rotation and self.scale == (1.0, 1.0):
             return uvs
         # The extension's text turns counter-clockwise as seen, with v pointing down. Its GLSL
         # turns the other way, but its example and all known viewers follow the text.
         cosine, sine = math.cos(self.rotation), math.sin(self.rotation)
         turn = np.array([[cosine, sine], [-sine, cosine]])
-        moved: Float64Array = (uvs * self.scale) @ turn.T + self.offset
+        with np.errstate(over="ignore", invalid="ignore"):
+            moved: Float64Array = (uvs * self.scale) @ turn.T + self.offset
         return moved
 
 
@@ -67,7 +73,7 @@ class GltfMaterials:
     def use(self, index: int | None) -> tuple[int, UvSource]:
         """The number of material `index` of the file, None being the default one, and its UVs.
 
-        Raises MeshError for a malformed material or an image that does not decode.
+        Raises MeshError for a malformed material.
         """
         if index not in self._made:
             self._made[index] = self._make(index)
@@ -81,14 +87,14 @@ class GltfMaterials:
     def _make(self, index: int | None) -> tuple[Material, UvSource]:
         if index is None:
             return Material(metallic=1.0), UvSource()
-        source = self._root.entry("materials", index)
-        glossy = source.extension(_GLOSSY) if source.get("pbrMetallicRoughness") is None else None
+        source = _without_nan(self._root.entry("materials", index), self._warnings)
+        glossy = _glossy(source)
         self._warn_of_extensions(source, glossy is not None)
         red, green, blue = source.numbers("emissiveFactor", (0.0, 0.0, 0.0))
-        infos = dict(_texture_infos(source, glossy))
+        infos, uvs = self._of_one_source(dict(_texture_infos(source, glossy)), source)
         factors = _glossy_factors(glossy) if glossy else _metallic_factors(source)
         material = Material(
-            name=source.text("name", "") or f"material_{index}",
+            name=material_name(source.text("name", ""), self._warnings) or f"material_{index}",
             base_color=factors[0],
             metallic=factors[1],
             roughness=factors[2],
@@ -98,7 +104,7 @@ class GltfMaterials:
             double_sided=source.flag("doubleSided"),
             maps=self._maps(infos),
         )
-        return material, self._uv_source(infos, source)
+        return material, uvs
 
     def _maps(self, infos: dict[str, Element]) -> dict[str, TextureMap]:
         made = {slot: self._map(slot, info) for slot, info in infos.items()}
@@ -130,16 +136,22 @@ class GltfMaterials:
     def _image(self, index: int) -> int | None:
         image = self._root.entry("images", index)
         uri = image.text("uri", "")
-        if uri:
-            data = read_uri(uri, self._folder, image.place)
-        else:
-            data = bytes(self._buffers.view(image.integer("bufferView")))
+        try:
+            data = self._image_bytes(image, uri)
+        except MeshError as why:
+            self._warnings.append(f"{why}: image left out")
+            return None
         shown = "" if uri.startswith("data:") else unquote(uri)
         name = shown or image.text("name", "") or f"image_{index}"
         if data is None:
             self._warnings.append(f"{image.place}: image {name!r} not found")
             return None
         return self.shelf.add(name, data, f"{image.place} ({name})")
+
+    def _image_bytes(self, image: Element, uri: str) -> bytes | None:
+        if uri:
+            return read_uri(uri, self._folder, image.place)
+        return bytes(self._buffers.view(image.integer("bufferView")))
 
     def _sampling(self, texture: Element) -> tuple[tuple[str, str], str]:
         index = texture.optional("sampler")
@@ -152,15 +164,23 @@ class GltfMaterials:
         chosen = _FILTERS.get(sampler.integer("magFilter", 9729), "linear")
         return (_WRAPS[modes[0]], _WRAPS[modes[1]]), chosen
 
-    def _uv_source(self, infos: dict[str, Element], material: Element) -> UvSource:
-        """Those of the base color, else of the first map; a mesh here has one set of UVs."""
-        sources = [_uv_source(info) for info in infos.values()]
-        if len(set(sources)) > 1:
+    def _of_one_source(
+        self, infos: dict[str, Element], material: Element
+    ) -> tuple[dict[str, Element], UvSource]:
+        """The maps that use the base color's UVs, else those of the first map, and these UVs.
+
+        A mesh has one set of UVs: a map with others would be looked up in wrong places.
+        """
+        sources = {slot: _uv_source(info) for slot, info in infos.items()}
+        first = next(iter(sources), "")
+        kept = {slot: info for slot, info in infos.items() if sources[slot] == sources[first]}
+        if len(kept) < len(infos):
+            others = ", ".join(slot for slot in infos if slot not in kept)
             self._warnings.append(
-                f"{material.place}: maps use different texture coordinates; "
-                f"those of {next(iter(infos))} are taken for all"
+                f"{material.place}: left out the maps for {others}: "
+                f"they use other texture coordinates than {first}"
             )
-        return sources[0] if sources else UvSource()
+        return kept, sources.get(first, UvSource())
 
     def _warn_of_extensions(self, material: Element, glossy: bool) -> None:
         if glossy:
@@ -174,6 +194,43 @@ class GltfMaterials:
             for name in names
             if not (glossy and name == _GLOSSY)
         )
+
+
+def _glossy(material: Element) -> Element | None:
+    """The specular-glossiness of a material, where its metallic-roughness has no picture to show.
+
+    Exporters that write both often leave the images to the older one.
+    """
+    glossy = material.extension(_GLOSSY)
+    pbr = material.get("pbrMetallicRoughness")
+    if glossy is None or pbr is None:
+        return glossy
+    pictured = glossy.get("diffuseTexture") is not None and pbr.get("baseColorTexture") is None
+    return glossy if pictured else None
+
+
+def _without_nan(material: Element, warnings: list[str]) -> Element:
+    """The material without factors of NaN or infinity, which are no JSON but are written."""
+    value, lost = _finite_members(material.value)
+    if lost:
+        warnings.append(f"{material.place}: {', '.join(lost)} no finite numbers: left out")
+    return replace(material, value=value)
+
+
+def _finite_members(value: object, depth: int = 3) -> tuple[object, list[str]]:
+    """The value without members that are not finite, down to `depth` objects, and their names."""
+    if not isinstance(value, dict) or depth == 0:
+        return value, []
+    kept: dict[str, object] = {}
+    lost: list[str] = []
+    for key, member in value.items():
+        numbers = member if isinstance(member, list) else [member]
+        if any(isinstance(each, float) and not math.isfinite(each) for each in numbers):
+            lost.append(key)
+            continue
+        kept[key], further = _finite_members(member, depth - 1)
+        lost += further
+    return kept, lost
 
 
 def _texture_infos(material: Element, glossy: Element | None) -> Iterator[tuple[str, Element]]:

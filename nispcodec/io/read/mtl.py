@@ -32,11 +32,16 @@ _OPTIONS = {
 
 @dataclass(frozen=True)
 class MapStatement:
-    """One image statement: options by name, the file as written, its place for messages."""
+    """One image statement: options by name, the names that its file may have, its place."""
 
-    reference: str
+    references: tuple[str, ...]
     options: dict[str, list[str]]
     place: str
+
+    @property
+    def reference(self) -> str:
+        """The file's name for messages, without what is likely a comment."""
+        return self.references[-1] or self.references[0]
 
 
 @dataclass
@@ -48,10 +53,11 @@ class MtlMaterial:
     maps: dict[str, MapStatement] = field(default_factory=dict)
 
 
-def parse_mtl(data: bytes, name: str) -> dict[str, MtlMaterial]:
+def parse_mtl(data: bytes, name: str, warnings: list[str]) -> dict[str, MtlMaterial]:
     """The materials of an MTL file by name.
 
-    Raises MeshError, naming the file `name` and the line, for a value that is no number.
+    Values of NaN or infinity are left out, with new `warnings`. Raises MeshError, naming the file
+    `name` and the line, for a value that is no number.
     """
     materials: dict[str, MtlMaterial] = {}
     current = MtlMaterial("")
@@ -62,6 +68,9 @@ def parse_mtl(data: bytes, name: str) -> dict[str, MtlMaterial]:
             current = MtlMaterial(wavefront.rest(line))
             materials[current.name] = current
         elif keyword in _VALUES:
+            if wavefront.not_finite(line.split()[1:]):
+                warnings.append(f"{place}: {keyword} is no finite number: left out")
+                continue
             current.values |= _values(keyword, line, place)
         elif keyword in _MAPS or keyword.startswith("map_"):
             current.maps[keyword] = _map_statement(line, place)
@@ -83,7 +92,7 @@ def _map_statement(line: bytes, place: str) -> MapStatement:
         option = words[at].lower()
         options[option] = _option_values(words[at + 1 : at + 1 + _OPTIONS[option]])
         at += 1 + len(options[option])
-    return MapStatement(wavefront.rest(line, at), options, place)
+    return MapStatement(wavefront.names(line, at), options, place)
 
 
 def _option_values(words: Sequence[str]) -> list[str]:

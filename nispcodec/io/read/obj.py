@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from array import array
 from collections.abc import Callable
 
@@ -12,7 +13,8 @@ from nispcodec.core.asset import TexturedMesh
 from nispcodec.core.errors import MeshError
 from nispcodec.io.folder import Folder
 from nispcodec.io.read import wavefront
-from nispcodec.io.read.obj_materials import MaterialReader
+from nispcodec.io.read.coordinates import without_unusable
+from nispcodec.io.read.obj_materials import MaterialReader, Placement
 from nispcodec.io.read.polygons import triangulate
 
 # Statements that carry nothing we could lose: normals, grouping, display.
@@ -26,7 +28,7 @@ def read_obj(data: bytes, name: str, folder: Folder) -> TexturedMesh:
     """Parse an OBJ file, and the MTL files and images that it names in `folder`.
 
     Faces may come before the vertices they use. Raises MeshError, naming the file `name` and the
-    line, for coordinates and indices that make no sense and for images that do not decode.
+    line, for positions and indices that make no sense.
     """
     statements = _Statements(name)
     statements.parse(data)
@@ -95,7 +97,11 @@ class _Statements:
             self._leave_out("vertex colors")
 
     def _uv(self, line: bytes) -> None:
-        values = wavefront.numbers(line.split()[1:], 1, self._place())
+        words = line.split()[1:]
+        if wavefront.not_finite(words[:2]):
+            self.uvs.extend((math.nan, math.nan))
+            return
+        values = wavefront.numbers(words, 1, self._place())
         self.uvs.extend(values[:2] if len(values) > 1 else (values[0], 0.0))
 
     def _face(self, line: bytes) -> None:
@@ -154,16 +160,48 @@ def _assemble(
     _expect_indices(statements, corners, len(positions), "vertex")
     _expect_indices(statements, corner_uvs, len(uvs), "texture coordinate")
     triangles, owner = triangulate(positions[corners], sizes)
+    uv_faces = _whole_or_none(corner_uvs[triangles], warnings, statements.name)
+    names, numbers = _resolved(list(statements.materials), materials)
+    face_materials = numbers[_integers(statements.face_materials)[owner]]
+    made = materials.materials(names)
+    placements = [materials.placement(name) for name in names]
+    uvs, placed = _placed(uvs, uv_faces.astype(np.int64), face_materials, placements)
+    uvs, placed = without_unusable(uvs, placed, statements.name, warnings)
     return TexturedMesh(
         positions=positions,
         faces=corners[triangles].astype(np.int32),
         uvs=uvs,
-        uv_faces=_whole_or_none(corner_uvs[triangles], warnings, statements.name),
-        face_materials=_integers(statements.face_materials)[owner].astype(np.int32),
-        materials=materials.materials(list(statements.materials)),
+        uv_faces=placed.astype(np.int32),
+        face_materials=face_materials.astype(np.int32),
+        materials=made,
         textures=tuple(materials.textures),
         warnings=tuple(warnings),
     )
+
+
+def _resolved(written: list[str], materials: MaterialReader) -> tuple[list[str], Int64Array]:
+    """The different materials that an OBJ's names mean, and the number there of each name."""
+    resolved = [materials.resolved(name) for name in written]
+    numbers = {name: number for number, name in enumerate(dict.fromkeys(resolved))}
+    return list(numbers), np.array([numbers[name] for name in resolved], dtype=np.int64)
+
+
+def _placed(
+    uvs: Float64Array,
+    uv_faces: Int64Array,
+    face_materials: Int64Array,
+    placements: list[Placement],
+) -> tuple[Float64Array, Int64Array]:
+    """UVs and faces, with rows of their own for materials whose maps do not lie on the file's."""
+    rows, faces = [uvs], uv_faces.copy()
+    for number, placement in enumerate(placements):
+        chosen = (face_materials == number)[:, None] & (uv_faces >= 0)
+        if placement == Placement() or not chosen.any():
+            continue
+        used, inverse = np.unique(uv_faces[chosen], return_inverse=True)
+        faces[chosen] = sum(map(len, rows)) + inverse
+        rows.append(placement.apply(uvs[used]))
+    return np.concatenate(rows), faces
 
 
 def _rows(values: array[float], columns: int) -> Float64Array:

@@ -3,19 +3,50 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
 
+import numpy as np
+
+from nispcodec.core.arrays import Float64Array
 from nispcodec.core.asset import Material, Texture, TextureMap
 from nispcodec.core.errors import MeshError
 from nispcodec.core.slots import SLOT_TABLE
 from nispcodec.io.folder import Folder
 from nispcodec.io.images import TextureShelf, is_gray
+from nispcodec.io.read import wavefront
 from nispcodec.io.read.mtl import MapStatement, MtlMaterial, is_number, parse_mtl
+from nispcodec.io.read.names import material_name
 
 # Keyword of an image statement -> slot; of two for one slot the first in this list wins.
 SLOT_OF = {keyword: slot.name for slot in SLOT_TABLE for keyword in slot.mtl_read}
-# Options that move UVs, and that change the image's values.
-_MOVING = {"-o", "-s", "-t"}
+# Options that move UVs, with the value that leaves them.
+_MOVING = {"-s": 1.0, "-o": 0.0}
+# Options that change the image's values.
 _CHANGING = {"-boost", "-cc", "-imfchan", "-mm"}
+# Words that one file name is looked for in, where a statement names several files.
+MOST_WORDS = 8
+# Words of one statement that may be names of files.
+MOST_FILES = 64
+# Names that one warning lists.
+MOST_SHOWN = 8
+
+
+@dataclass(frozen=True)
+class Placement:
+    """Where a map lies on the UVs of a file: it is looked up at uv * scale + offset.
+
+    As Blender reads `-s` and `-o`, and as it writes the same scene to glTF.
+    """
+
+    scale: tuple[float, float] = (1.0, 1.0)
+    offset: tuple[float, float] = (0.0, 0.0)
+
+    def apply(self, uvs: Float64Array) -> Float64Array:
+        """UVs (n, 2) of the file -> those looked up; NaN or infinity where they overflow."""
+        with np.errstate(over="ignore", invalid="ignore"):
+            placed: Float64Array = uvs * self.scale + self.offset
+        return placed
 
 
 class MaterialReader:
@@ -28,8 +59,12 @@ class MaterialReader:
         self._folder = folder
         self._warnings = warnings
         self._shelf = TextureShelf(warnings)
+        self._libraries: set[Path] = set()
+        self._lost = False
         self._known: dict[str, MtlMaterial] = {}
-        self._libraries = 0
+        self._commented: dict[str, set[str]] = {}
+        self._folders: dict[str, Folder] = {}
+        self._placements: dict[str, Placement] = {}
 
     @property
     def textures(self) -> Sequence[Texture]:
@@ -41,28 +76,78 @@ class MaterialReader:
 
         `place` is that of the statement, for warnings. Raises MeshError for a malformed MTL file.
         """
-        whole = self._folder.find(reference)
-        names = [reference] if whole else reference.split()
-        for name in names:
-            path = self._folder.find(name)
-            if path is None:
-                self._warnings.append(f"{place}: material file {name!r} not found")
+        for path in self._library_paths(reference, place):
+            if path in self._libraries:
                 continue
-            self._libraries += 1
-            self._known.update(parse_mtl(self._folder.read(path), path.name))
+            self._libraries.add(path)
+            found = parse_mtl(self._folder.read(path), path.name, self._warnings)
+            self._known.update(found)
+            self._folders.update(dict.fromkeys(found, Folder(path.parent)))
+            for name in found:
+                for short in wavefront.without_comments(name)[1:]:
+                    self._commented.setdefault(short, set()).add(name)
+
+    def _library_paths(self, reference: str, place: str) -> list[Path]:
+        """The files that a statement names: one, or several between spaces, with spaces in them."""
+        texts = wavefront.without_comments(reference)
+        whole = next((path for path in map(self._folder.find, texts) if path), None)
+        if whole is not None:
+            return [whole]
+        words, found, missing = texts[-1].split()[:MOST_FILES], list[Path](), list[str]()
+        while words:
+            count, path = self._longest_found(words[:MOST_WORDS])
+            if path is None:
+                missing.append(words[0])
+            else:
+                found.append(path)
+            del words[:count]
+        if missing or not texts[0]:
+            self._lost = True
+            self._warnings.append(f"{place}: material file {' '.join(missing)!r} not found")
+        return found
+
+    def _longest_found(self, words: Sequence[str]) -> tuple[int, Path | None]:
+        """How many of the words make the longest name of a file, and the file; or 1 and None."""
+        for count in range(len(words), 0, -1):
+            path = self._folder.find(" ".join(words[:count]))
+            if path is not None:
+                return count, path
+        return 1, None
+
+    def resolved(self, name: str) -> str:
+        """The name by which a material file holds the material that an OBJ calls `name`.
+
+        `name` itself where none does. What follows a "#" counts as a comment where it has to.
+        """
+        for candidate in wavefront.without_comments(name):
+            if candidate in self._known:
+                return candidate
+        alike = self._commented.get(name, ())
+        return next(iter(alike)) if name and len(alike) == 1 else name
 
     def materials(self, names: Sequence[str]) -> tuple[Material, ...]:
         """One material for each name, in order; at least one.
 
-        Raises MeshError for an image that cannot be read and for a malformed option.
+        Raises MeshError for a malformed option.
         """
+        self._warn_of_unknown([repr(name) for name in names if name and name not in self._known])
         return tuple(self._material(name) for name in names) or (Material(),)
+
+    def placement(self, name: str) -> Placement:
+        """Where the maps of a material that `materials` has made lie."""
+        return self._placements.get(name, Placement())
+
+    def _warn_of_unknown(self, missing: Sequence[str]) -> None:
+        # A file that was not found has its warning already.
+        if not missing or (self._lost and not self._libraries):
+            return
+        are = "material {} is" if len(missing) == 1 else "materials {} are"
+        shown = ", ".join(missing[:MOST_SHOWN]) + (", ..." if missing[MOST_SHOWN:] else "")
+        self._warnings.append(f"{are.format(shown)} in no material file")
 
     def _material(self, name: str) -> Material:
         if name not in self._known:
-            if name and self._libraries:
-                self._warnings.append(f"material {name!r} is in no material file")
-            return Material(name=name or "material")
+            return Material(name=material_name(name, self._warnings) or "material")
         return self._finished(self._known[name])
 
     def _finished(self, found: MtlMaterial) -> Material:
@@ -80,7 +165,7 @@ class MaterialReader:
         if "emissive" in maps and glow == (0.0, 0.0, 0.0):
             glow = (1.0, 1.0, 1.0)
         return Material(
-            name=found.name,
+            name=material_name(found.name, self._warnings),
             base_color=(red, green, blue, alpha),
             metallic=_unit(found.values.get("pm", [0.0])[0]),
             roughness=_unit(found.values.get("pr", [1.0])[0]),
@@ -92,6 +177,8 @@ class MaterialReader:
     def _maps(self, found: MtlMaterial) -> dict[str, TextureMap]:
         maps: dict[str, TextureMap] = {}
         taken: dict[str, str] = {}
+        placements: dict[str, Placement] = {}
+        folder = self._folders[found.name]
         for keyword, slot in SLOT_OF.items():
             statement = found.maps.get(keyword)
             if statement is None or statement.reference == taken.get(slot):
@@ -99,19 +186,36 @@ class MaterialReader:
             if slot in maps:
                 self._warn(statement, f"{keyword} gives way to {taken[slot]!r}")
                 continue
-            made = self._map(keyword, statement)
+            made = self._map(keyword, statement, folder)
             if made is not None:
                 maps[slot], taken[slot] = made, statement.reference
+                placements[slot] = _placement(statement)
+        self._place(found, placements)
         self._warn_of_others(found)
         return maps
 
-    def _map(self, keyword: str, statement: MapStatement) -> TextureMap | None:
-        path = self._folder.find(statement.reference)
+    def _place(self, found: MtlMaterial, placements: dict[str, Placement]) -> None:
+        """Take that of the base color, else of the first map: a mesh has one set of UVs."""
+        different = set(placements.values())
+        if different:
+            self._placements[found.name] = next(iter(placements.values()))
+        if len(different) > 1:
+            self._warnings.append(
+                f"material {found.name!r}: -s and -o of its maps differ; "
+                f"those of {next(iter(placements))} are taken for all"
+            )
+
+    def _map(self, keyword: str, statement: MapStatement, folder: Folder) -> TextureMap | None:
+        path = self._image(statement, folder)
         if path is None:
             self._warn(statement, "image not found")
             return None
-        data = self._folder.read(path)
-        if "bump" in keyword and is_gray(data, str(path)):
+        try:
+            data = folder.read(path)
+        except MeshError as why:
+            self._warn(statement, f"{why}: left out")
+            return None
+        if "bump" in keyword and is_gray(data):
             self._warn(statement, "a gray height map, not a normal map: left out")
             return None
         self._warn_of_options(statement)
@@ -122,10 +226,17 @@ class MaterialReader:
         wrap = "clamp" if clamp == ["on"] else "repeat"
         return TextureMap(texture, (wrap, wrap), strength=_strength(statement))
 
+    def _image(self, statement: MapStatement, folder: Folder) -> Path | None:
+        """The image of a statement: beside its material file, else beside the OBJ."""
+        places = (
+            place.find(name) for name in statement.references for place in (folder, self._folder)
+        )
+        return next((path for path in places if path is not None), None)
+
     def _warn_of_options(self, statement: MapStatement) -> None:
         for option, values in statement.options.items():
-            if option in _MOVING and not _stays(option, values):
-                self._warn(statement, f"{option} is not applied: texture coordinates stay")
+            if option == "-t" and not all(is_number(each) and not float(each) for each in values):
+                self._warn(statement, "-t is not applied: texture coordinates stay")
             elif option in _CHANGING:
                 self._warn(statement, f"{option} is not applied: the image stays")
 
@@ -141,10 +252,19 @@ class MaterialReader:
         self._warnings.append(f"{statement.place}: {statement.reference!r}: {what}")
 
 
-def _stays(option: str, values: Sequence[str]) -> bool:
-    """Whether an option moves UVs by nothing; some exporters always write it."""
-    neutral = 1.0 if option == "-s" else 0.0
-    return all(is_number(value) and float(value) == neutral for value in values)
+def _placement(statement: MapStatement) -> Placement:
+    """The -s and -o of a statement. Raises MeshError for values that are no numbers."""
+    (scale_u, scale_v), (u, v) = (_pair(statement, *each) for each in _MOVING.items())
+    return Placement((scale_u, scale_v), (u, v))
+
+
+def _pair(statement: MapStatement, option: str, neutral: float) -> tuple[float, float]:
+    """Two values of an option: a missing one is neutral."""
+    values = statement.options.get(option, [str(neutral)])
+    if not values or not all(map(is_number, values)):
+        raise MeshError(f"{statement.place}: expected numbers after {option}, found {values!r}")
+    numbers = [*map(float, values), neutral]
+    return numbers[0], numbers[1]
 
 
 def _alpha(values: dict[str, list[float]]) -> float:

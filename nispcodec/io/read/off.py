@@ -1,16 +1,20 @@
-"""OFF: polygons in text, geometry alone."""
+"""OFF: polygons in text, with texture coordinates in STOFF."""
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Iterator
+from dataclasses import replace
 
 import numpy as np
 
+from nispcodec.core.arrays import Float64Array
 from nispcodec.core.asset import TexturedMesh
 from nispcodec.core.errors import MeshError
 from nispcodec.io.folder import Folder
 from nispcodec.io.read import wavefront
+from nispcodec.io.read.coordinates import without_unusable
 from nispcodec.io.read.polygons import triangulate
 
 Lines = Iterator[tuple[int, bytes]]
@@ -19,29 +23,70 @@ _KEYWORD = re.compile(rb"(ST)?C?N?OFF")
 
 
 def read_off(data: bytes, name: str, folder: Folder) -> TexturedMesh:
-    """Parse a text OFF file; what follows x, y, z on a vertex line is left out.
+    """Parse a text OFF file: positions, faces, and the texture coordinates of STOFF.
 
     OFF names no other files: `folder` is not looked at. Raises MeshError, naming the file `name`
     and the line, for a malformed file.
     """
     lines = wavefront.logical_lines(data)
-    vertices, faces = _counts(lines, name)
-    rows = [
-        wavefront.numbers(line.split(), 3, f"{name}:{number}")[:3]
-        for number, line in _take(lines, vertices, f"{name}: expected {vertices} vertices")
-    ]
+    kind, vertices, faces = _head(lines, name)
+    said = _LeftOut(name)
+    positions, uvs = _vertices(lines, vertices, kind, said)
     sizes, corners = [], []
     for number, line in _take(lines, faces, f"{name}: expected {faces} faces"):
-        face = _face(line.split(), vertices, f"{name}:{number}")
-        sizes.append(len(face))
-        corners.extend(face)
-    positions = np.array(rows, dtype=np.float64).reshape(-1, 3)
+        face, others = _face(line.split(), vertices, f"{name}:{number}")
+        said.add("face colors", len(others))
+        said.add("faces of fewer than three corners", len(face) < 3)
+        if len(face) > 2:
+            sizes.append(len(face))
+            corners.extend(face)
     indices = np.array(corners, dtype=np.int64)
     triangles, _ = triangulate(positions[indices], np.array(sizes, dtype=np.int64))
-    return TexturedMesh.geometry_only(positions, indices[triangles], name)
+    mesh = TexturedMesh.geometry_only(positions, indices[triangles], name)
+    if uvs is not None:
+        used, uv_faces = without_unusable(uvs, indices[triangles], name, said.warnings)
+        mesh = replace(mesh, uvs=used, uv_faces=uv_faces.astype(np.int32))
+    return replace(mesh, warnings=tuple(said.warnings))
 
 
-def _counts(lines: Lines, name: str) -> tuple[int, int]:
+class _LeftOut:
+    """Warnings of what is left out, each kind once."""
+
+    def __init__(self, name: str) -> None:
+        self.warnings: list[str] = []
+        self.name = name
+
+    def add(self, what: str, there: int) -> None:
+        warning = f"{self.name}: left out {what}"
+        if there and warning not in self.warnings:
+            self.warnings.append(warning)
+
+
+def _vertices(
+    lines: Lines, count: int, kind: bytes, said: _LeftOut
+) -> tuple[Float64Array, Float64Array | None]:
+    """Positions (n, 3), and UVs (n, 2) where the `kind` has them: x y z [normal] [color] [s t]."""
+    rows, uvs = [], []
+    textured, known = kind.startswith(b"ST"), 3 + 3 * (b"N" in kind) + 2 * kind.startswith(b"ST")
+    for number, line in _take(lines, count, f"{said.name}: expected {count} vertices"):
+        words, place = line.split(), f"{said.name}:{number}"
+        rows.append(wavefront.numbers(words[:3], 3, place))
+        if textured:
+            uvs.append(_uv(words[3:], place))
+        said.add("vertex colors", len(words) > known)
+    positions = np.array(rows, dtype=np.float64).reshape(-1, 3)
+    return positions, np.array(uvs, dtype=np.float64).reshape(-1, 2) if textured else None
+
+
+def _uv(words: list[bytes], place: str) -> list[float]:
+    """The last two of the numbers after the position; NaN where they are not finite."""
+    if wavefront.not_finite(words[-2:]):
+        return [math.nan, math.nan]
+    return wavefront.numbers(words[-2:], 2, place)
+
+
+def _head(lines: Lines, name: str) -> tuple[bytes, int, int]:
+    """The keyword, and the counts of vertices and faces."""
     number, line = next(lines, (1, b""))
     keyword = _KEYWORD.match(line)
     if keyword is None or b"BINARY" in line:
@@ -54,7 +99,7 @@ def _counts(lines: Lines, name: str) -> tuple[int, int]:
         raise MeshError(
             f"{name}:{number}: expected counts of vertices and faces, found {rest[:40]!r}"
         )
-    return int(words[0]), int(words[1])
+    return keyword[0], int(words[0]), int(words[1])
 
 
 def _take(lines: Lines, count: int, expected: str) -> Lines:
@@ -65,16 +110,17 @@ def _take(lines: Lines, count: int, expected: str) -> Lines:
         yield found
 
 
-def _face(words: list[bytes], vertices: int, place: str) -> list[int]:
+def _face(words: list[bytes], vertices: int, place: str) -> tuple[list[int], list[bytes]]:
+    """The corners of a face, and what follows them."""
     try:
         size = int(words[0])
-        face = [int(word) for word in words[1 : size + 1]]
+        face = [int(word) for word in words[1 : max(size, 0) + 1]]
     except ValueError:
         size, face = 0, []
-    if size < 3 or len(face) != size or not all(0 <= index < vertices for index in face):
+    if size < 1 or len(face) != size or not all(0 <= index < vertices for index in face):
         shown = wavefront.text(b" ".join(words[:8]))
         raise MeshError(
-            f"{place}: expected a count from 3 and as many indices below {vertices}, "
+            f"{place}: expected a count from 1 and as many indices below {vertices}, "
             f"found {shown!r}"
         )
-    return face
+    return face, words[size + 1 :]

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import re
 import struct
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
-from pathlib import PurePath
+from pathlib import Path, PurePath
 
 import numpy as np
 
@@ -15,6 +16,8 @@ from nispcodec.core.errors import MeshError
 from nispcodec.io.folder import Folder
 from nispcodec.io.images import TextureShelf
 from nispcodec.io.read import wavefront
+from nispcodec.io.read.coordinates import without_unusable
+from nispcodec.io.read.names import material_name
 from nispcodec.io.read.polygons import triangulate
 
 _TYPES = {
@@ -24,6 +27,12 @@ _TYPES = {
 }  # fmt: skip
 _ORDERS = {"binary_little_endian": "<", "binary_big_endian": ">"}
 _UV_NAMES = (("s", "t"), ("u", "v"), ("texture_u", "texture_v"))
+_XYZ = ("x", "y", "z")
+_COLORS = {"red", "diffuse_red"}
+# The line of its own, which a comment may quote.
+_END = re.compile(rb"[\r\n]end_header[ \t]*(?:\r?\n|\r)")
+# Comments before the name of an image, besides MeshLab's TextureFile.
+_TEXTURE = re.compile(r"texture[_-]?(file|name|map)?[:=]?", re.IGNORECASE)
 
 
 @dataclass(frozen=True)
@@ -48,43 +57,50 @@ class Element:
 
 @dataclass
 class Header:
-    """A PLY header: format, elements, names of texture files; `size` is its length in bytes."""
+    """A PLY header; `size` is its length in bytes.
+
+    `textures` are the names of texture files, `likely_textures` what other comments seem to name.
+    """
 
     format: str
     elements: list[Element]
     textures: list[str]
+    likely_textures: list[str]
     size: int
 
 
 def read_ply(data: bytes, name: str, folder: Folder) -> TexturedMesh:
-    """Parse a PLY file, and the images in `folder` that its TextureFile comments name.
+    """Parse a PLY file, and the images in `folder` that its comments name.
 
     Raises MeshError, naming the file `name` and the place in it, for a malformed file.
     """
+    data = data.removeprefix(wavefront.BYTE_ORDER_MARK)
     header = parse_header(data, name)
     _read_elements(header, data, name)
     elements = {element.name: element for element in header.elements}
     vertex, face = elements.get("vertex"), elements.get("face")
+    warnings: list[str] = []
+    if face is None and "tristrips" in elements:
+        face = _without_strips(elements["tristrips"])
     if vertex is None or face is None:
         raise MeshError(f"{name}: expected elements vertex and face, found {list(elements)}")
-    warnings: list[str] = []
-    if "red" in vertex.columns:
-        warnings.append(f"{name}: left out vertex colors")
-    materials, textures = _materials(header.textures, name, folder, warnings)
+    for element in (vertex, face):
+        if _COLORS & element.columns.keys():
+            warnings.append(f"{name}: left out {element.name} colors")
+    materials, textures = _materials(header, name, folder, warnings)
     return _assembled(vertex, face, materials, textures, warnings, name)
 
 
 def parse_header(data: bytes, name: str) -> Header:
-    """Parse the file up to and including `end_header`.
+    """Parse the file up to and including the line `end_header`.
 
     Raises MeshError, naming the file `name` and the line, for a malformed header.
     """
-    end = data.find(b"end_header")
-    newline = data.find(b"\n", end)
-    if not data.startswith(b"ply") or end < 0 or newline < 0:
+    end = _END.search(data)
+    if not data.startswith(b"ply") or end is None:
         raise MeshError(f"{name}: expected a header from 'ply' to 'end_header', found none")
-    header = Header("", [], [], newline + 1)
-    for number, line in enumerate(data[:end].splitlines(), 1):
+    header = Header("", [], [], [], end.end())
+    for number, line in enumerate(data[: end.start()].splitlines(), 1):
         words = wavefront.text(line).split()
         try:
             _header_line(header, words, line)
@@ -93,7 +109,29 @@ def parse_header(data: bytes, name: str) -> Header:
             raise MeshError(f"{name}:{number}: expected a PLY header, found {shown!r}") from why
     if header.format != "ascii" and header.format not in _ORDERS:
         raise MeshError(f"{name}: expected a PLY format, found {header.format!r}")
+    _expect_different([element.name for element in header.elements], f"{name}: elements")
+    for element in header.elements:
+        names = [column.name for column in element.properties]
+        _expect_different(names, f"{name}: properties of {element.name}")
     return header
+
+
+def _expect_different(names: Sequence[str], place: str) -> None:
+    repeated = [each for index, each in enumerate(names) if each in names[:index]]
+    if repeated:
+        raise MeshError(f"{place}: expected different names, found {repeated[0]!r} twice")
+
+
+def _without_strips(strips: Element) -> Element:
+    """Strips, with -1 between them, as faces: every second triangle is the other way round."""
+    listed = strips.lists.get("vertex_indices") or strips.lists.get("vertex_index") or []
+    flat = np.array([index for strip in listed for index in (*strip, -1)], dtype=np.float64)
+    place = np.arange(len(flat))
+    since = place - np.maximum.accumulate(np.where(flat < 0, place + 1, 0))
+    first = np.flatnonzero((since[2:] >= 2) & (flat[2:] >= 0))
+    odd = since[first + 2] % 2
+    faces = flat[np.stack([first, first + 1 + odd, first + 2 - odd], axis=1)]
+    return Element("face", len(faces), lists={"vertex_indices": faces.tolist()})
 
 
 def _header_line(header: Header, words: list[str], line: bytes) -> None:
@@ -102,6 +140,8 @@ def _header_line(header: Header, words: list[str], line: bytes) -> None:
             header.format = found
         case ["comment", "TextureFile", _, *_]:
             header.textures.append(wavefront.rest(line, 2))
+        case ["comment", key, _, *_] if _TEXTURE.fullmatch(key):
+            header.likely_textures.append(wavefront.rest(line, 2))
         case ["element", found, count]:
             if not 0 <= int(count) < 2**31:
                 raise ValueError(count)
@@ -123,6 +163,11 @@ class _Text:
         self._words = body.split()
         self._at = 0
 
+    @property
+    def left(self) -> int:
+        """No more numbers than this are there."""
+        return len(self._words) - self._at
+
     def take(self, codes: str) -> Sequence[float]:
         words = self._words[self._at : self._at + len(codes)]
         self._at += len(codes)
@@ -139,6 +184,11 @@ class _Binary:
         self._order = order
         self._at = 0
 
+    @property
+    def left(self) -> int:
+        """No more numbers than this are there."""
+        return len(self._body) - self._at
+
     def take(self, codes: str) -> Sequence[float]:
         layout = self._order + codes
         size = struct.calcsize(layout)
@@ -152,18 +202,19 @@ class _Binary:
 def _read_elements(header: Header, data: bytes, name: str) -> None:
     body = data[header.size :]
     order = _ORDERS.get(header.format)
-    take = (_Text(body) if order is None else _Binary(body, order)).take
+    queue = _Text(body) if order is None else _Binary(body, order)
     for element in header.elements:
         for row in range(element.count if element.properties else 0):
             try:
-                _read_row(element, take)
+                _read_row(element, queue)
             except (ValueError, OverflowError) as why:
                 raise MeshError(
                     f"{name}: {element.name} {row}: expected numbers as in the header, found: {why}"
                 ) from why
 
 
-def _read_row(element: Element, take: Callable[[str], Sequence[float]]) -> None:
+def _read_row(element: Element, queue: _Text | _Binary) -> None:
+    take = queue.take
     if not any(column.count_code for column in element.properties):
         values = take("".join(column.code for column in element.properties))
         for column, value in zip(element.properties, values, strict=True):
@@ -174,25 +225,35 @@ def _read_row(element: Element, take: Callable[[str], Sequence[float]]) -> None:
             element.columns.setdefault(column.name, []).append(take(column.code)[0])
             continue
         count = int(take(column.count_code)[0])
-        if not 0 <= count < 2**16:
+        if not 0 <= count <= queue.left:
             raise ValueError(f"a list of {count}")
         element.lists.setdefault(column.name, []).append(take(column.code * count))
 
 
 def _materials(
-    files: Sequence[str], name: str, folder: Folder, warnings: list[str]
+    header: Header, name: str, folder: Folder, warnings: list[str]
 ) -> tuple[tuple[Material, ...], tuple[Texture, ...]]:
-    """One material a texture file, or a plain one."""
+    """One material a texture file."""
     shelf = TextureShelf(warnings)
+    files = header.textures or header.likely_textures
     materials = []
     for file in files:
         path = folder.find(file)
-        texture = None if path is None else shelf.add(path.name, folder.read(path), str(path))
+        texture = None if path is None else _image(path, folder, shelf, warnings)
         maps = {} if texture is None else {"base_color": TextureMap(texture)}
-        materials.append(Material(name=PurePath(file).stem or "material", maps=maps))
+        stem = material_name(PurePath(file).stem, warnings)
+        materials.append(Material(name=stem or "material", maps=maps))
         if path is None:
             warnings.append(f"{name}: image {file!r} not found")
-    return tuple(materials) or (Material(),), tuple(shelf.textures)
+    return tuple(materials), tuple(shelf.textures)
+
+
+def _image(path: Path, folder: Folder, shelf: TextureShelf, warnings: list[str]) -> int | None:
+    try:
+        return shelf.add(path.name, folder.read(path), str(path))
+    except MeshError as why:
+        warnings.append(f"{why}: left out")
+        return None
 
 
 def _assembled(
@@ -203,20 +264,31 @@ def _assembled(
     warnings: list[str],
     name: str,
 ) -> TexturedMesh:
-    positions = _columns(vertex, ("x", "y", "z"), name)
+    positions = _positions(vertex, name)
     polygons = face.lists.get("vertex_indices") or face.lists.get("vertex_index") or []
     sizes = np.array([len(polygon) for polygon in polygons], dtype=np.int64)
-    if sizes.size and sizes.min() < 3:
-        raise MeshError(f"{name}: face {int(sizes.argmin())}: expected three corners or more")
     corners = _flat_indices(polygons, len(positions), name)
-    triangles, owner = triangulate(positions[corners], sizes)
     uvs, corner_uvs = _uvs(vertex, face, corners, sizes, name)
     numbers = _face_materials(face, len(sizes), len(materials), name)
+    if not materials or (numbers == len(materials)).any():
+        materials = (*materials, Material())
+    whole = sizes >= 3
+    if not whole.all():
+        warnings.append(f"{name}: left out {(~whole).sum()} face(s) of fewer than three corners")
+        kept = np.repeat(whole, sizes)
+        corners, corner_uvs, sizes, numbers = (
+            corners[kept],
+            corner_uvs[kept],
+            sizes[whole],
+            numbers[whole],
+        )
+    triangles, owner = triangulate(positions[corners], sizes)
+    uvs, uv_faces = without_unusable(uvs, corner_uvs[triangles], name, warnings)
     return TexturedMesh(
         positions=positions,
         faces=corners[triangles].astype(np.int32),
         uvs=uvs,
-        uv_faces=corner_uvs[triangles].astype(np.int32),
+        uv_faces=uv_faces.astype(np.int32),
         face_materials=numbers[owner].astype(np.int32),
         materials=materials,
         textures=textures,
@@ -224,19 +296,25 @@ def _assembled(
     )
 
 
+def _positions(vertex: Element, name: str) -> Float64Array:
+    """(n, 3) finite numbers."""
+    values = _columns(vertex, _XYZ, name)
+    finite = np.isfinite(values).all(axis=1)
+    if not finite.all():
+        row = int(finite.argmin())
+        raise MeshError(
+            f"{name}: vertex {row}: expected finite {_XYZ}, found {values[row].tolist()}"
+        )
+    return values
+
+
 def _columns(vertex: Element, names: tuple[str, ...], name: str) -> Float64Array:
-    """(n, len(names)) finite numbers."""
+    """(n, len(names)) numbers."""
     missing = [column for column in names if column not in vertex.columns]
     if missing and vertex.count:
         raise MeshError(f"{name}: expected vertex properties {names}, found none of {missing}")
     table = [vertex.columns.get(column, []) for column in names]
     values = np.array(table, dtype=np.float64).reshape(len(names), -1).T
-    finite = np.isfinite(values).all(axis=1)
-    if not finite.all():
-        row = int(finite.argmin())
-        raise MeshError(
-            f"{name}: vertex {row}: expected finite {names}, found {values[row].tolist()}"
-        )
     return np.ascontiguousarray(values)
 
 
@@ -279,18 +357,16 @@ def _corner_uvs(
             f"{name}: face {face}: expected {2 * sizes[face]} texture coordinates, "
             f"found {lengths[face]}"
         )
-    if not np.isfinite(flat).all():
-        raise MeshError(f"{name}: expected finite texture coordinates, found NaN or infinity")
     has_uv = np.repeat(lengths > 0, sizes)
     return flat.reshape(-1, 2), np.where(has_uv, np.cumsum(has_uv) - 1, -1)
 
 
 def _face_materials(face: Element, faces: int, materials: int, name: str) -> Int64Array:
-    """MeshLab numbers the textures; -1, no texture, counts as the first."""
+    """MeshLab numbers the textures; -1 is none. A file without textures has material 0."""
     numbers = face.columns.get("texnumber")
     if numbers is None:
         return np.zeros(faces, dtype=np.int64)
-    chosen = np.maximum(np.array(numbers, dtype=np.float64), 0)
-    if not (chosen < materials).all():
+    chosen = np.array(numbers, dtype=np.float64)
+    if not (chosen < max(materials, 1)).all():
         raise MeshError(f"{name}: expected texnumbers below {materials}, found {chosen.max():g}")
-    return chosen.astype(np.int64)
+    return np.where(chosen < 0, materials, chosen).astype(np.int64)

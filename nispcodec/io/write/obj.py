@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import math
-import re
 
 import numpy as np
 
 from nispcodec.core.arrays import AnyArray, Float32Array
 from nispcodec.core.asset import Material, TexturedMesh, TextureMap
 from nispcodec.core.slots import BY_NAME
+from nispcodec.io.write.names import image_names, plain, unique
 
 
 def obj_files(
@@ -22,22 +22,22 @@ def obj_files(
     nothing else uses with them.
     """
     if colors is not None:
-        return {f"{stem}.obj": _colored_obj(mesh, colors).encode()}
-    images = [f"{stem}_{name}" for name in _unique([_plain(t.name) for t in mesh.textures])]
-    names = _unique([_plain(material.name) for material in mesh.materials])
+        return {f"{stem}.obj": _colored_obj(mesh, colors).encode(errors="surrogateescape")}
+    images = image_names(stem, mesh.textures)
+    names = unique([plain(material.name) for material in mesh.materials])
     slots = [slots for material in mesh.materials for slots in material.maps.items()]
     wanted = {used.texture for slot, used in slots if BY_NAME[slot].mtl_write}
     files = {images[index]: mesh.textures[index].data for index in sorted(wanted)}
     materials = zip(mesh.materials, names, strict=True)
     mtl = "\n".join(_mtl(material, name, images) for material, name in materials)
     return files | {
-        f"{stem}.mtl": mtl.encode(),
-        f"{stem}.obj": _obj(mesh, f"{stem}.mtl", names).encode(),
+        f"{stem}.mtl": mtl.encode(errors="surrogateescape"),
+        f"{stem}.obj": _obj(mesh, f"{stem}.mtl", names).encode(errors="surrogateescape"),
     }
 
 
 def _obj(mesh: TexturedMesh, library: str, names: list[str]) -> str:
-    parts = [f"mtllib {library}\no {_plain(mesh.name)}\n"]
+    parts = [f"mtllib {library}\no {plain(mesh.name)}\n"]
     parts.append(_rows(f"v {_decimals(mesh)}\n", mesh.positions))
     parts.append(_rows("vt %.7g %.7g\n", mesh.uvs))
     for material in np.unique(mesh.face_materials).tolist():
@@ -53,7 +53,7 @@ def _obj(mesh: TexturedMesh, library: str, names: list[str]) -> str:
 def _colored_obj(mesh: TexturedMesh, colors: Float32Array) -> str:
     vertices = np.hstack([mesh.positions, colors[:, :3]])
     return (
-        f"o {_plain(mesh.name)}\n"
+        f"o {plain(mesh.name)}\n"
         + _rows(f"v {_decimals(mesh)} %.4g %.4g %.4g\n", vertices)
         + _rows("f %d %d %d\n", mesh.faces + 1)
     )
@@ -88,21 +88,3 @@ def _map(keyword: str, used: TextureMap, images: list[str]) -> str:
     if keyword in BY_NAME["normal"].mtl_write and used.strength != 1:
         options += f" -bm {used.strength:.6g}"
     return f"{keyword}{options} {images[used.texture]}"
-
-
-def _plain(name: str) -> str:
-    """The name with nothing that ends a word or a path in an OBJ or MTL file."""
-    return re.sub(r"[^\w.-]+", "_", name).lstrip(".") or "unnamed"
-
-
-def _unique(names: list[str]) -> list[str]:
-    """Equal names told apart (also where upper and lower case are one) by a number in front."""
-    seen: set[str] = set()
-    result = []
-    for name in names:
-        candidate, number = name, 2
-        while candidate.lower() in seen:
-            candidate, number = f"{number}_{name}", number + 1
-        seen.add(candidate.lower())
-        result.append(candidate)
-    return result

@@ -1,0 +1,66 @@
+"""The losses of an asset in each format that is written, in words."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+
+from nispcodec.core.asset import Material, TexturedMesh, TextureMap
+from nispcodec.core.slots import BY_NAME, SLOTS
+
+
+def glb_losses(mesh: TexturedMesh) -> Iterator[str]:
+    """The sentences of a GLB: all but AVIF is kept."""
+    if any(texture.mime == "image/avif" for texture in mesh.textures):
+        yield "the AVIF of images, which are converted to PNG: GLB readers do not know it"
+
+
+def obj_losses(mesh: TexturedMesh) -> Iterator[str]:
+    """Those of an OBJ with its MTL."""
+    yield from _maps(mesh, [slot for slot in SLOTS if BY_NAME[slot].mtl_write])
+    if any(_is_masked(each) for each in mesh.materials):
+        yield "alpha modes: MTL has none"
+    wraps = {("repeat", "repeat"), ("clamp", "clamp")}
+    yield from _sampling(mesh.materials, wraps, "MTL repeats or clamps in both directions")
+
+
+def ply_losses(mesh: TexturedMesh) -> Iterator[str]:
+    """Those of a PLY with its images."""
+    yield from _maps(mesh, ["base_color"])
+    if any(_factors(each) != _factors(Material()) for each in mesh.materials):
+        yield "factors of materials: PLY has none"
+    if any(_is_masked(each) for each in mesh.materials):
+        yield "alpha modes: PLY has none"
+    yield from _sampling(mesh.materials, {("repeat", "repeat")}, "PLY repeats images")
+
+
+def stl_losses(mesh: TexturedMesh) -> Iterator[str]:
+    """Those of an STL."""
+    plain = _factors(Material())
+    if mesh.has_uv.any() or any(each.maps or _factors(each) != plain for each in mesh.materials):
+        yield "texture coordinates, materials and images: STL holds geometry alone"
+
+
+def _maps(mesh: TexturedMesh, held: list[str]) -> Iterator[str]:
+    used = {slot for each in mesh.materials for slot in each.maps}
+    lost = [slot for slot in SLOTS if slot in used and slot not in held]
+    if lost:
+        yield f"maps: {', '.join(lost)}"
+
+
+def _sampling(
+    materials: Iterable[Material], wraps: set[tuple[str, str]], rule: str
+) -> Iterator[str]:
+    used: list[TextureMap] = [each for made in materials for each in made.maps.values()]
+    if any(each.wrap not in wraps for each in used):
+        yield f"wraps: {rule}"
+    if any(each.filter == "nearest" for each in used):
+        yield "the filter nearest: images are shown smoothly"
+
+
+def _is_masked(material: Material) -> bool:
+    """Whether its alpha mode is no consequence of its factor's alpha."""
+    return material.alpha_mode != ("blend" if material.base_color[3] < 1 else "opaque")
+
+
+def _factors(material: Material) -> tuple[object, ...]:
+    return material.base_color, material.metallic, material.roughness, material.emissive

@@ -1,0 +1,45 @@
+from __future__ import annotations
+
+import os
+import signal
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from nispcodec_cli.unwrapping import apart, with_collapsed_named
+
+from nispcodec.core.asset import TexturedMesh
+from nispcodec.core.errors import MeshError, NispError
+
+MESH = TexturedMesh.geometry_only(np.eye(3), np.arange(3)[None], "m")
+
+
+def crash(mesh: TexturedMesh) -> TexturedMesh:
+    os.kill(os.getpid(), signal.SIGKILL)
+    return mesh
+
+
+def refuse(mesh: TexturedMesh) -> TexturedMesh:
+    raise MeshError(f"{mesh.name}: refused")
+
+
+def renamed(mesh: TexturedMesh) -> TexturedMesh:
+    return replace(mesh, name="other")
+
+
+def test_a_crash_ends_the_other_process_alone() -> None:
+    with pytest.raises(NispError, match="m: expected an atlas, found a crash while unwrapping 1"):
+        apart(crash, MESH)
+
+
+def test_results_and_errors_come_back() -> None:
+    assert apart(renamed, MESH).name == "other"
+    with pytest.raises(MeshError, match="m: refused"):
+        apart(refuse, MESH)
+
+
+def test_faces_without_an_area_in_the_atlas_are_counted() -> None:
+    (warning,) = with_collapsed_named(MESH).warnings
+    assert warning.startswith("unwrapping: 1 of 1 faces got no area in the atlas")
+    laid = replace(MESH, uvs=np.eye(3)[:, :2].copy(), uv_faces=MESH.faces)
+    assert with_collapsed_named(laid).warnings == ()
