@@ -141,10 +141,6 @@ def _expect_possible(asset: TexturedMesh, config: EncodeConfig, output: Path) ->
     free = shutil.disk_usage(output.parent).free
     if free < needed:
         raise NispError(f"{output}: expected {needed:,} bytes free on the disk, found {free:,}")
-    if config.device not in ("auto", "cpu"):
-        from nispcodec.train.workers import resolve_device
-
-        resolve_device(config.device)
 
 
 def _report(
