@@ -25,7 +25,8 @@ class Batches:
     def prefer(self, hardness: FloatArray) -> None:
         """From now on; (count,), 0 for a sample that is not hard. A new round begins."""
         self._hard = np.flatnonzero(hardness).astype(np.int32)
-        self._upto = np.cumsum(hardness[self._hard], dtype=np.float64)
+        weights = hardness[self._hard].astype(np.float64)
+        self._shares = weights / weights.sum() if len(weights) else weights
         self._order = self._order[:0]
 
     def _next(self) -> Int32Array:
@@ -38,6 +39,6 @@ class Batches:
         order = self._random.permutation(np.int32(self._count)).astype(np.int32)
         if not len(self._hard):
             return order
-        drawn = self._random.random(self._count) * self._upto[-1]
-        places = np.minimum(np.searchsorted(self._upto, drawn, side="right"), len(self._hard) - 1)
-        return np.stack([order, self._hard[places]], axis=1).ravel()
+        # How often each is drawn, then their order: one by one it takes ten times as long.
+        again = np.repeat(self._hard, self._random.multinomial(self._count, self._shares))
+        return np.stack([order, self._random.permutation(again)], axis=1).ravel()
