@@ -154,13 +154,6 @@ def refused_early(mesh: Path, out: Path, encoder: Encoder, *options: str) -> str
     return result.stderr
 
 
-def test_a_device_that_is_not_there_is_refused_before_any_work(
-    encoder: Encoder, mesh: Path, tmp_path: Path
-) -> None:
-    said = refused_early(mesh, tmp_path / "out.nisp", encoder, "--device", "cuda:99")
-    assert "device: expected one that torch finds here" in said
-
-
 def test_too_many_materials_are_refused_before_any_work(encoder: Encoder, tmp_path: Path) -> None:
     names = "".join(f"usemtl m{number}\nf 1 2 3\n" for number in range(4097))
     path = tmp_path / "many.obj"

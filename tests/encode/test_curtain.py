@@ -25,7 +25,7 @@ def curtain() -> TexturedMesh:
     return TexturedMesh(
         positions=positions,
         faces=faces,
-        uvs=np.concatenate([uvs, uvs + [0.1, 0.0]]),
+        uvs=np.concatenate([uvs, uvs + np.array([0.1, 0.0])]),
         uv_faces=np.where(left, faces, faces + len(uvs)).astype(np.int32),
         face_materials=np.zeros(len(faces), np.int32),
     )

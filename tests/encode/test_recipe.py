@@ -11,7 +11,8 @@ import pytest
 
 import nispcodec
 from nispcodec import EncodeConfig, NispError, NispModel, TexturedMesh
-from nispcodec.core.progress import Listener, silent
+from nispcodec.core.errors import FitError
+from nispcodec.core.progress import Listener, Progress, silent
 from nispcodec.core.texture import reencode
 from nispcodec.edit.texture_padding import with_padded_textures
 from nispcodec.encode.config import PRESETS
@@ -128,3 +129,10 @@ def test_stages_and_networks_are_reported() -> None:
     stages = list(dict.fromkeys(progress.stage for progress in seen if not progress.network))
     assert stages[:4] == ["textures", "charts and hidden walls", "samples", "fit"]
     assert stages[4:] == ["probe how much there is to learn"]
+
+
+def test_a_device_that_is_not_there_is_an_error_before_any_work() -> None:
+    told: list[Progress] = []
+    with pytest.raises(FitError, match="device: expected one that torch finds here"):
+        encode(box_asset(), EncodeConfig(device="cuda:99"), told.append)
+    assert not told

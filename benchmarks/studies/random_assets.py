@@ -1,0 +1,132 @@
+"""Random assets through every preset: none may end in an error.
+
+    python -m benchmarks.studies.random_assets [--count 50] [--share 0.1] [--presets fast,best]
+
+Turned bodies of random profiles, closed or open, and wavy sheets; one to four in an asset, each
+with one or two charts. `--share` of a preset's steps, as whole fits of fifty assets take an hour.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator
+from dataclasses import replace
+
+import click
+import numpy as np
+
+import nispcodec
+from benchmarks.measuring.result_file import Record, as_json
+from nispcodec import EncodeConfig, NispError, Progress, TexturedMesh
+from nispcodec.core.arrays import Float64Array, Int32Array
+from nispcodec.encode.config import Tuning
+
+ROWS, COLUMNS = 24, 40
+Surface = tuple[Float64Array, Float64Array]
+"""Positions (rows + 1, columns + 1, 3) and UVs (rows + 1, columns + 1, 2) of a grid."""
+
+
+@click.command()
+@click.option("--count", default=50, show_default=True)
+@click.option("--share", default=0.1, show_default=True, help="Of the steps of a preset.")
+@click.option("--presets", default="fast,balanced,best", show_default=True)
+def main(count: int, share: float, presets: str) -> None:
+    """Encode them all; exits with 1 when one fails."""
+    records = list(runs(count, share, presets.split(",")))
+    print(as_json({"encodes": records}))
+    raise SystemExit(any("error" in record for record in records))
+
+
+def runs(count: int, share: float, presets: list[str]) -> Iterator[Record]:
+    """A record for every asset and preset."""
+    for number in range(count):
+        mesh = random_asset(np.random.default_rng(number))
+        for preset in presets:
+            found = encoded(mesh, preset, number, share)
+            click.echo(f"{number} {preset} {found}", err=True)
+            yield {"asset": number, "preset": preset, **found}
+
+
+def encoded(mesh: TexturedMesh, preset: str, seed: int, share: float) -> Record:
+    """What the encoder measured, its warnings and seconds; or the error."""
+    notes: list[str] = []
+
+    def heard(update: Progress) -> None:
+        if "warning" in update.note or "diverged" in update.note:
+            notes.append(f"{update.network} {update.note}")
+
+    started = time.monotonic()
+    try:
+        model = nispcodec.encode(mesh, EncodeConfig(preset, seed), heard, shortened(share))
+    except NispError as error:
+        return {"error": str(error)}
+    seconds = round(time.monotonic() - started, 1)
+    return {"seconds": seconds, "notes": notes, **model.document.info}
+
+
+def shortened(share: float) -> Tuning:
+    """The usual numbers, with a share of the steps."""
+    usual = Tuning()
+    budgets = {
+        name: replace(budget, steps=max(1, round(share * budget.steps)))
+        for name, budget in usual.training.budgets.items()
+    }
+    return replace(usual, training=replace(usual.training, budgets=budgets))
+
+
+def random_asset(random: np.random.Generator) -> TexturedMesh:
+    """One to four surfaces, here and there, of different sizes."""
+    parts = [random_surface(random) for _ in range(random.integers(1, 5))]
+    faces = np.concatenate([grid_faces(number) for number in range(len(parts))])
+    cut = (faces % COLUMNS).min(axis=1) < COLUMNS // 2
+    two = random.random() < 0.5
+    uvs = np.concatenate([uv.reshape(-1, 2) for _, uv in parts])
+    return TexturedMesh(
+        positions=np.concatenate([position.reshape(-1, 3) for position, _ in parts]),
+        faces=faces,
+        uvs=np.concatenate([uvs, uvs + 1.5]),
+        uv_faces=np.where((two & cut)[:, None], faces + len(uvs), faces).astype(np.int32),
+        face_materials=np.zeros(len(faces), np.int32),
+    )
+
+
+def random_surface(random: np.random.Generator) -> Surface:
+    """A turned body or a wavy sheet, turned and moved."""
+    down, across = np.meshgrid(
+        np.linspace(0, 1, ROWS + 1), np.linspace(0, 1, COLUMNS + 1), indexing="ij"
+    )
+    shape = turned_body if random.random() < 0.7 else wavy_sheet
+    axes = np.linalg.qr(random.normal(size=(3, 3)))[0]
+    placed = shape(random, down, across) @ axes * random.uniform(0.3, 1) + random.uniform(-1, 1, 3)
+    corner, size = random.uniform(0, 0.5, 2), random.uniform(0.2, 0.5)
+    return placed, corner + size * np.stack([across, down], axis=2)
+
+
+def turned_body(
+    random: np.random.Generator, down: Float64Array, across: Float64Array
+) -> Float64Array:
+    """A profile of a few waves around an axis; open at its ends in one of three."""
+    waves = sum(random.normal() / k * np.sin(k * np.pi * down + random.normal()) for k in (1, 2, 3))
+    radius = 0.2 + np.abs(waves) * (1 if random.random() < 1 / 3 else np.sin(np.pi * down))
+    angle = 2 * np.pi * across
+    return np.stack([radius * np.cos(angle), radius * np.sin(angle), 2 * down - 1], axis=2)
+
+
+def wavy_sheet(
+    random: np.random.Generator, down: Float64Array, across: Float64Array
+) -> Float64Array:
+    """A square with waves."""
+    counts = random.integers(1, 6, 2)
+    waves = np.sin(counts[0] * np.pi * across) * np.cos(counts[1] * np.pi * down)
+    return np.stack([2 * across - 1, 2 * down - 1, random.uniform(0, 0.3) * waves], axis=2)
+
+
+def grid_faces(number: int) -> Int32Array:
+    """Two triangles a cell of the grid with this number."""
+    grid = np.arange((ROWS + 1) * (COLUMNS + 1), dtype=np.int32).reshape(ROWS + 1, COLUMNS + 1)
+    a, b, c, d = grid[:-1, :-1], grid[:-1, 1:], grid[1:, 1:], grid[1:, :-1]
+    return np.stack([a, b, c, a, c, d], axis=-1).reshape(-1, 3) + np.int32(number * grid.size)
+
+
+if __name__ == "__main__":
+    main()
