@@ -321,14 +321,14 @@ class TrainConfig:
     networks: Mapping[str, NetworkConfig] = field(
         default_factory=lambda: {
             "sdf": NetworkConfig(1e-3, 0.01, 1.0, 0.3, 1.0, 0.045, (24,) * 4),
-            "chart": NetworkConfig(3e-3, 0.01, 1.0, 1.0, 0.45, 0.02, (24,) * 3),
-            "uv": NetworkConfig(1e-3, 0.04, 2 / 3, 1.0, 0.7, 0.08, (24,) * 4),
+            "chart": NetworkConfig(3e-3, 0.01, 1.0, 1.0, 0.4, 0.02, (24,) * 3),
+            "uv": NetworkConfig(1e-3, 0.04, 2 / 3, 1.0, 1.0, 0.08, (24,) * 4),
         }
     )
     budgets: Mapping[str, TrainingBudget] = field(
         default_factory=lambda: {
             "fast": TrainingBudget(9_000, 0.8, 3, 800, 0.7),
-            "balanced": TrainingBudget(40_000, 1.0, 9, 800),
+            "balanced": TrainingBudget(40_000, 1.0, 9, 2000),
             "best": TrainingBudget(200_000, 1.2, 15, 4000),
         }
     )
