@@ -170,6 +170,8 @@ class _Run:
             self._tell("quantize", self.task.schedule.steps, before, 0.0, "")
             weights, steps = round_weights(unrounded, absolute, self.random)
             tries.append((self._error(weights), weights, steps))
+            if tries[-1][0] > config.spoiled * before:
+                absolute = replace(absolute, lambda_=config.finer * absolute.lambda_)
         after, weights, steps = min(tries, key=lambda each: each[0])
         note = f"held-out error {before:.3g} before, {after:.3g} after"
         self._tell("quantize", self.task.schedule.steps, after, 0.0, note)

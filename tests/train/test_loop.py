@@ -161,3 +161,14 @@ def test_rounding_that_costs_much_is_tried_again_and_the_best_stays(
     rounded = vector(run(task))
     assert untried == []
     assert float(np.abs(rounded - plain - np.float32(kept)).max()) < 1e-5
+
+
+def test_rounding_that_spoils_a_network_is_tried_again_more_finely() -> None:
+    """After a short fit charts are right and not sure: rounding as of sure ones makes all wrong."""
+    short = replace(chart_task(), spec=NetworkSpec((12, 12), 2, w0=5.0))
+    schedule = replace(short.schedule, rate=3e-3)
+    told: list[Progress] = []
+    run(replace(short, schedule=schedule, quantization=Quantization(0.02)), told.append)
+    before, *_, after = (update.error for update in told if update.stage == "quantize")
+    assert before < 0.02
+    assert after < 2 * before
