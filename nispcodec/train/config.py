@@ -133,6 +133,9 @@ class QuantizeConfig:
     least_samples      points that second derivatives are a mean over, at least ...
     most_samples       ... and at most
     derivatives        points times weights in between: more points where there are few weights
+    ridge              share of each weight's own second derivative that is added to it, where there
+                       is a point for each weight looked at together; with more points it falls by
+                       the square: what few points say of pairs of weights is in part chance
     whole              networks of so many weights are rounded with all pairs looked at together ...
     block              ... larger ones in blocks of so many: memory and time run away beyond
     entries            per-point derivatives in memory at a time
@@ -152,12 +155,13 @@ class QuantizeConfig:
     finer              ... the next try takes so much of its lambda
     """
 
-    least_samples: int = 8_000
-    most_samples: int = 32_000
-    derivatives: int = 60_000_000
-    whole: int = 5_000
-    block: int = 2_500
-    entries: int = 4_000_000
+    least_samples: int = 4_500
+    most_samples: int = 10_000
+    derivatives: int = 20_000_000
+    ridge: float = 8e-3
+    whole: int = 3_000
+    block: int = 2_520
+    entries: int = 2_000_000
     newton_shares: tuple[float, ...] = (0.0, 0.1, 0.3, 1.0)
     header_bits: int = 52
     finest: float = 1e-6

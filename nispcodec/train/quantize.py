@@ -13,8 +13,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.linalg import cho_solve, lapack
-from scipy.linalg.blas import ssyrk
+from scipy.linalg import lapack
 
 from nispcodec.core.arrays import Float32Array, Float64Array, FloatArray, IndexArray
 from nispcodec.core.errors import FitError
@@ -24,6 +23,7 @@ from nispcodec.train.backend.protocol import Trainer
 from nispcodec.train.config import QuantizeConfig
 from nispcodec.train.layout import WeightLayout, four_bits
 from nispcodec.train.task import Quantization, Task
+from nispcodec.train.triangle import Triangle
 
 GAUSSIAN_BITS = 0.5 * math.log2(2 * math.pi * math.e)
 TINY = 1e-30
@@ -65,31 +65,34 @@ def round_weights(
     rise = _Rise(unrounded, samples[random.permutation(len(samples))[:count]], config)
     # The last of a block is rounded first: so it goes from the first layer to the last, in which
     # the outputs are linear and what went wrong before is made up for best.
-    order = unrounded.places[::-1]
+    order = np.ascontiguousarray(unrounded.places[::-1])
     blocks = _blocks(order, len(order) if len(order) <= config.whole else config.block)
     roots = rise.roots(blocks, random)
     most = MAX_ROW_SHIFT if objective.own_curvature else 0
     grid, steps = _grid(unrounded, order, roots, quantization, most)
     for places, root in zip(reversed(blocks), reversed(roots), strict=True):
-        values, sizes = rise.least(places, root), grid[places]
-        together = nearest(values / sizes, root * sizes)
-        # Steps so coarse that the rise is no square any more: then each weight by itself.
-        rise.best(places, [together * sizes, np.rint(values / sizes) * sizes])
+        rise.round(places, root.square(), grid[places])
     return rise.weights, steps
 
 
-def nearest(values: Float64Array, root: Float64Array) -> Float64Array:
-    """Integers x (n,) for which |root (x - values)| is small; `root` (n, n) upper triangular."""
-    lines = root / np.diag(root)[:, None]
-    missing, found = np.zeros_like(values), np.zeros_like(values)
+def nearest(values: Float64Array, root: FloatArray, sizes: Float64Array) -> Float64Array:
+    """Multiples x (n,) of their `sizes` (n,) for which |root (x - values)| is small.
+
+    root  (n, n) upper triangular; what is below its diagonal is not looked at
+    """
+    found, pulls = np.zeros_like(values), np.zeros_like(values)
+    stiffness = np.diag(root).astype(np.float64)
     for i in reversed(range(len(values))):
-        found[i] = np.round(values[i] + lines[i, i + 1 :] @ missing[i + 1 :])
-        missing[i] = values[i] - found[i]
+        wanted = values[i] + pulls[i] / stiffness[i]
+        found[i] = np.rint(wanted / sizes[i]) * sizes[i]
+        # A column at a time: as the memory of a root from LAPACK has them.
+        pulls[:i] += root[:i, i] * (values[i] - found[i])
     return found
 
 
 def _blocks(order: IndexArray, size: int) -> list[IndexArray]:
-    return [order[start : start + size] for start in range(0, len(order), size)]
+    """Parts of about the same size, of `size` weights at most."""
+    return np.array_split(order, -(-len(order) // size))
 
 
 class _Rise:
@@ -102,13 +105,39 @@ class _Rise:
         self._first = self._outputs()
         self._factors = unrounded.task.objective.factors(self._first, samples).astype(np.float32)
 
-    def least(self, places: IndexArray, root: Float64Array) -> Float64Array:
-        """Values in these places that make it least, as far as Newton's step leads there."""
-        values = self.weights[places].astype(np.float64)
-        step = cho_solve((root, False), self._slope()[places].astype(np.float64))
-        return self.best(places, [values - share * step for share in self._config.newton_shares])
+    def round(self, places: IndexArray, root: Float32Array, sizes: Float64Array) -> None:
+        """Put the weights in these places on a grid of these sizes."""
+        values = self._least(places, root)
+        # Steps so coarse that the rise is no square any more: then each weight by itself.
+        alone = np.rint(values / sizes) * sizes
+        self._best(places, [nearest(values, root, sizes), alone])
 
-    def best(self, places: IndexArray, candidates: Sequence[Float64Array]) -> Float64Array:
+    def roots(self, blocks: Sequence[IndexArray], random: np.random.Generator) -> list[Triangle]:
+        """Upper Cholesky factors of its second derivatives, block by block."""
+        # One direction for each point in place of all, right in the mean.
+        signs = random.integers(0, 2, self._factors.shape[::2]) * 2.0 - 1
+        directions = _along(self._factors, signs.astype(np.float32))
+        found = [Triangle.zeros(len(block)) for block in blocks]
+        for slopes in self._slopes(directions):
+            for block, triangle in zip(blocks, found, strict=True):
+                triangle.add(slopes.take(block, axis=1), 1 / len(self._samples))
+        for triangle in found:
+            # The fewer points a weight, the less of how weights hang together is more than chance.
+            ridge = self._config.ridge * (triangle.size / len(self._samples)) ** 2
+            _factor(triangle, ridge, self._damping)
+        return found
+
+    def _least(self, places: IndexArray, root: Float32Array) -> Float64Array:
+        """Values in these places that make it least, as far as Newton's step leads there."""
+        values, off = self.weights[places].astype(np.float64), self._off()
+        if not off.any():
+            return values
+        parts = self._slopes(_along(self._factors, off), places)
+        slope = sum((part.sum(axis=0) for part in parts), np.zeros(len(places), np.float32))
+        step, _ = lapack.spotrs(root, slope / np.float32(len(self._samples)))
+        return self._best(places, [values - share * step for share in self._config.newton_shares])
+
+    def _best(self, places: IndexArray, candidates: Sequence[Float64Array]) -> Float64Array:
         """The candidate for these places with the least rise, which is now there."""
         rises = []
         for values in candidates:
@@ -118,32 +147,17 @@ class _Rise:
         self.weights[places] = chosen
         return chosen
 
-    def roots(
-        self, blocks: Sequence[IndexArray], random: np.random.Generator
-    ) -> list[Float64Array]:
-        """Upper Cholesky factors of its second derivatives, block by block."""
-        # One direction for each point in place of all, right in the mean.
-        signs = random.integers(0, 2, self._factors.shape[::2]) * 2.0 - 1
-        directions = _along(self._factors, signs.astype(np.float32))
-        sums = [np.zeros((len(block),) * 2, np.float32, order="F") for block in blocks]
-        for slopes in self._slopes(directions):
-            for block, total in zip(blocks, sums, strict=True):
-                # Rows of the columns that a block has, as the Fortran routine wants them.
-                ssyrk(1.0, slopes[:, block].T, 1.0, total, overwrite_c=True)
-        return [_root(total / len(self._samples), self._damping) for total in sums]
+    def _slopes(
+        self, directions: Float32Array, places: IndexArray | None = None
+    ) -> Iterator[Float32Array]:
+        """Derivatives (some points, weights) of the outputs along directions (n, outputs).
 
-    def _slope(self) -> Float64Array:
-        """Its derivatives by the weights (weights,), where they are now."""
-        pulls = _along(self._factors, self._off())
-        slopes = (part.sum(axis=0, dtype=np.float64) for part in self._slopes(pulls))
-        return sum(slopes, np.zeros(len(self.weights))) / len(self._samples)
-
-    def _slopes(self, directions: Float32Array) -> Iterator[Float32Array]:
-        """Derivatives (some points, weights) of the outputs along directions (n, outputs)."""
+        By the weights in `places`, or by all.
+        """
         size = max(1, self._config.entries // len(self.weights))
         for start in range(0, len(self._samples), size):
             part, along = self._samples[start : start + size], directions[start : start + size]
-            yield self._trainer.slopes(self.weights, part.points, part.chart, along)
+            yield self._trainer.slopes(self.weights, part.points, part.chart, along, places)
 
     def _off(self) -> Float32Array:
         """How far the outputs are from where they were, by the factors' columns (n, r)."""
@@ -158,24 +172,30 @@ def _along(factors: Float32Array, amounts: Float32Array) -> Float32Array:
     return np.ascontiguousarray((factors @ amounts[:, :, None])[:, :, 0], dtype=np.float32)
 
 
-def _root(square: FloatArray, damping: float) -> Float64Array:
-    """Upper Cholesky factor of an upper triangle, with ten times the damping until there is one."""
-    mean = float(np.diag(square).mean()) + TINY
-    if not math.isfinite(mean):
-        raise FitError("weights cannot be rounded: expected finite derivatives, found NaN")
+def _factor(triangle: Triangle, ridge: float, damping: float) -> None:
+    """Replace a square by its upper Cholesky factor.
+
+    Its diagonal is raised by the share `ridge`, and by `damping` times its mean: ten times both,
+    until there is a factor. Raises FitError for a square that is not finite.
+    """
     while True:
-        damped = square.astype(np.float64)
-        damped[np.diag_indices(len(damped))] += damping * mean
-        root, failed = lapack.dpotrf(damped, lower=0, clean=1)
+        square = triangle.square()
+        diagonal = np.diag(square)
+        mean = float(diagonal.mean()) + TINY
+        if not math.isfinite(mean):
+            raise FitError("weights cannot be rounded: expected finite derivatives, found NaN")
+        square[np.diag_indices(len(square))] = (1 + ridge) * diagonal + damping * mean
+        root, failed = lapack.spotrf(square, lower=0, clean=0, overwrite_a=True)
         if not failed:
-            return root
-        damping *= 10
+            triangle.set(root)
+            return
+        ridge, damping = 10 * ridge, 10 * damping
 
 
 def _grid(
     unrounded: Unrounded,
     order: IndexArray,
-    roots: Sequence[Float64Array],
+    roots: Sequence[Triangle],
     quantization: Quantization,
     most: int,
 ) -> tuple[Float64Array, Float64Array]:
@@ -187,7 +207,7 @@ def _grid(
     of charts that are rare to round them more coarsely.
     """
     layout, config = unrounded.layout, unrounded.task.config.quantize
-    stiffness = np.concatenate([np.diag(root) ** 2 for root in roots])
+    stiffness = np.concatenate([np.diag(root.square()).astype(np.float64) ** 2 for root in roots])
     rows, count = layout.rows[order], int(layout.rows.max()) + 1
     counts = np.bincount(rows, minlength=count).astype(np.float64)
     total = np.bincount(rows, stiffness, minlength=count)

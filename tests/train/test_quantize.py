@@ -153,7 +153,7 @@ def test_nearest_is_at_most_half_a_step_off_in_the_metric(seed: int, size: int) 
     root = np.triu(rng.normal(size=(size, size)))
     root[np.diag_indices(size)] = rng.uniform(0.1, 2, size)
     values = rng.normal(0, 10, size)
-    found = nearest(values, root)
+    found = nearest(values, root, np.ones(size))
     assert np.array_equal(found, np.rint(found))
     assert (np.abs(root @ (found - values)) <= np.diag(root) / 2 + 1e-9).all()
 

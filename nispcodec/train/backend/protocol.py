@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Protocol
 
-from nispcodec.core.arrays import Float32Array, Int32Array, IntArray
+from nispcodec.core.arrays import Float32Array, Int32Array, Int64Array, IntArray
 from nispcodec.train.task import Task
 
 ErrorRadii = Callable[[Float32Array, float, bool], Float32Array]
@@ -49,8 +49,12 @@ class Trainer(Protocol):
         points: Float32Array,
         charts: IntArray,
         directions: Float32Array,
+        places: Int64Array | None = None,
     ) -> Float32Array:
-        """Derivatives (n, weights) of each point's outputs along its direction (n, outputs)."""
+        """Derivatives (n, weights) of each point's outputs along its direction (n, outputs).
+
+        (n, m) by the weights at `places` (m,) alone.
+        """
 
 
 class Engine(Protocol):

@@ -7,7 +7,7 @@ import torch
 from torch import Tensor
 from torch.func import grad, vmap
 
-from nispcodec.core.arrays import Float32Array, Int32Array, IntArray
+from nispcodec.core.arrays import Float32Array, Int32Array, Int64Array, IntArray
 from nispcodec.train.backend.torch.batch import Batch
 from nispcodec.train.backend.torch.forward import Forward
 from nispcodec.train.backend.torch.losses import LOSSES
@@ -82,6 +82,7 @@ class TorchTrainer:
         points: Float32Array,
         charts: IntArray,
         directions: Float32Array,
+        places: Int64Array | None = None,
     ) -> Float32Array:
         """See `Trainer`."""
 
@@ -90,7 +91,8 @@ class TorchTrainer:
 
         every = vmap(grad(along), in_dims=(None, 0, 0, 0))
         used, wanted = (torch.from_numpy(each).to(self._device) for each in (weights, directions))
-        return _array(every(used, *self._placed(points, charts), wanted))
+        found = _array(every(used, *self._placed(points, charts), wanted))
+        return found if places is None else found[:, places]
 
     def _step(self, rows: Int32Array, rate: np.float32) -> Tensor:
         loss = self._backward(rows)

@@ -52,6 +52,9 @@ def test_slopes_add_up_to_the_change_of_the_outputs(task: Task) -> None:
     ends = [trainer.outputs(weights + sign * step, part.points, part.chart) for sign in (1, -1)]
     change = ((ends[0] - ends[1]) * along).sum(axis=1) / 2
     assert slopes @ step == pytest.approx(change, abs=2e-2 * float(np.abs(change).max()))
+    places = np.array([len(weights) - 1, 0, 3])
+    some = trainer.slopes(weights, part.points, part.chart, along, places)
+    assert (some == slopes[:, places]).all()
 
 
 @pytest.mark.parametrize("device", ["gpu", "mps", "cuda:99x", ""])
