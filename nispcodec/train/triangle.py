@@ -23,7 +23,7 @@ class Triangle:
 
     @staticmethod
     def zeros(size: int) -> Triangle:
-        """Of a matrix of zeros."""
+        """The triangle of a matrix of zeros (size, size)."""
         return Triangle(size, np.zeros(size * (size + 1) // 2, np.float32))
 
     def add(self, rows: Float32Array, weight: float) -> None:
