@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import math
+import subprocess
+import sys
 import threading
 import time
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -13,6 +16,8 @@ from nispcodec.core.errors import FitError
 from nispcodec.core.progress import Progress, silent
 from nispcodec.train.workers import fit_networks
 from tests.train.fits import ENGINE, chart_task, judged_by, sdf_task
+
+ROOT = Path(__file__).parents[2]
 
 
 def fits_running() -> int:
@@ -62,3 +67,22 @@ def test_progress_is_told_in_the_thread_that_asked() -> None:
     heard = set()
     fit_networks([sdf_task(50)], 0, ENGINE, 2, lambda _: heard.add(threading.current_thread()))
     assert heard == {threading.current_thread()}
+
+
+def test_a_process_ends_in_peace_while_others_are_still_fitted() -> None:
+    """One fit fails, the other is in the middle of compiled code."""
+    code = (
+        "from dataclasses import replace\n"
+        "from nispcodec.core.network import NetworkSpec\n"
+        "from nispcodec.core.progress import silent\n"
+        "from nispcodec.train.backend.choice import choose_engine\n"
+        "from nispcodec.train.workers import fit_networks\n"
+        "from tests.train.fits import chart_task, judged_by, sdf_task\n"
+        "long = replace(sdf_task(100_000), spec=NetworkSpec((66,) * 5, 1))\n"
+        "hopeless = judged_by(chart_task(), lambda outputs, samples: float('nan'))\n"
+        "engine = choose_engine('auto', 'cpu', False, silent)\n"
+        "fit_networks([long, hopeless], 0, engine, 2, silent)\n"
+    )
+    run = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True)
+    assert run.returncode == 1, run.stderr
+    assert "FitError: chart network" in run.stderr

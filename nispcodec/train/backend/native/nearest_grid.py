@@ -24,7 +24,8 @@ class NearestGrid:
         self._grid = self._functions.nisp_grid_new(pointer(points), len(points))
         if not self._grid:
             raise NativeError("the nearest grid: out of memory")
-        weakref.finalize(self, self._functions.nisp_grid_free, self._grid)
+        # Not when Python ends: a fit's thread may still be searching it.
+        weakref.finalize(self, self._functions.nisp_grid_free, self._grid).atexit = False
 
     def error_radii(
         self, sdf: Float32Array, field: Float32Array, limit: float, floaters: bool = False

@@ -85,7 +85,9 @@ class NativeTrainer:
         self._functions = library(isa).functions
         self._trainer = self._made(loss, settings)
         # A forked child has none of the threads that the end would wait for.
-        weakref.finalize(self, _free, self._functions.nisp_trainer_free, self._trainer, os.getpid())
+        told = (self._functions.nisp_trainer_free, self._trainer, os.getpid())
+        # Not when Python ends: a fit's thread may still be computing with it.
+        weakref.finalize(self, _free, *told).atexit = False
         self.restart(weights)
         self.threads = threads
 
