@@ -329,9 +329,9 @@ class TrainConfig:
     paper: PaperConfig = field(default_factory=PaperConfig)
     networks: Mapping[str, NetworkConfig] = field(
         default_factory=lambda: {
-            "sdf": NetworkConfig(1e-3, 0.01, 1.0, 0.3, 1.0, 0.045, (24,) * 4),
+            "sdf": NetworkConfig(1e-3, 0.01, 1.0, 0.3, 1.0, 0.06, (24,) * 4),
             "chart": NetworkConfig(3e-3, 0.01, 1.0, 1.0, 0.4, 0.02, (24,) * 3),
-            "uv": NetworkConfig(1e-3, 0.04, 2 / 3, 1.0, 1.0, 0.08, (24,) * 4),
+            "uv": NetworkConfig(1e-3, 0.04, 2 / 3, 1.0, 1.0, 0.12, (24,) * 4),
         }
     )
     budgets: Mapping[str, TrainingBudget] = field(
