@@ -19,6 +19,31 @@ def row_ids(rows: AnyArray) -> Int64Array:
     return ids
 
 
+def cell_ids(*tables: AnyArray) -> Int64Array:
+    """Tables (n, c) or (n, 1) -> (n, c) int64: cells equal in all tables get equal numbers.
+
+    Numbers count from 0 up, without gaps.
+    """
+    stacked = np.stack(np.broadcast_arrays(*tables), axis=2)
+    return row_ids(stacked.reshape(-1, len(tables))).reshape(stacked.shape[:2])
+
+
+def rim(corners: Int64Array) -> tuple[Int64Array, Int32Array]:
+    """(m, 3) corner numbers from 0 up -> the b sides of faces that no other side cancels, loops.
+
+    sides (b,) int64, into the 3 m sides, each from a corner to the next; loops (b,) int32: sides
+    that corners connect share a number.
+    """
+    start, end = corners.reshape(-1), np.roll(corners, -1, axis=1).reshape(-1)
+    low, high = np.minimum(start, end), np.maximum(start, end)
+    _, edge = np.unique(low * (int(corners.max()) + 1) + high, return_inverse=True)
+    balance = np.bincount(edge.reshape(-1), weights=np.where(start < end, 1, -1))
+    sides = np.flatnonzero(balance[edge.reshape(-1)] != 0)
+    if not len(sides):
+        return sides, np.zeros(0, dtype=np.int32)
+    return sides, connected_faces(np.stack([start, end, start], axis=1)[sides])
+
+
 def connected_faces(corners: Int64Array) -> Int32Array:
     """(m, 3) corner numbers from 0 up -> (m,) int32: faces that corners connect share a number.
 

@@ -38,22 +38,20 @@ def training_sets(sampler: Sampler) -> TrainingSets:
     MeshError for a texture that does not decode.
     """
     c = sampler.config
+    tight, near_uvs, near_charts = sampler.near_and_nearer(
+        c.tight_count,
+        c.tight_spread,
+        [(c.near_surface_count, spread) for spread in (c.uv_spread, c.chart_spread)],
+    )
+    closing = sampler.closing_surface(c.closing_count)
     distance = (
         sampler.near_surface(c.near_count, 1 / c.beta),
-        sampler.near_surface(c.tight_count, c.tight_spread),
+        tight,
         sampler.cube(c.cube_count),
         sampler.near_surface(c.wide_count, c.wide_spread),
         *sampler.asymmetric(c.asymmetric_count, c.asymmetric_spread) * c.asymmetric_times,
     )
-    uvs, charts = (
-        SampleSet.joined(
-            (
-                sampler.near_surface(c.near_surface_count, spread, signed=False),
-                sampler.closing_surface(c.closing_count),
-            )
-        )
-        for spread in (c.uv_spread, c.chart_spread)
-    )
+    uvs, charts = (SampleSet.joined((near, closing)) for near in (near_uvs, near_charts))
     return TrainingSets(
         charts=SampleSet.joined((charts, sampler.by_chart_error(charts, c.chart_error_count))),
         held_out_distance=sampler.near_surface(c.held_out_count, c.uv_spread),

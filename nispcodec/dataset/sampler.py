@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -13,7 +14,7 @@ from nispcodec.dataset.config import SamplingConfig
 from nispcodec.dataset.texture_gradient import texture_gradient
 from nispcodec.geometry.analysis import Analysis
 from nispcodec.geometry.openings import spread_over
-from nispcodec.geometry.solid import area, normals
+from nispcodec.geometry.solid import area
 from nispcodec.geometry.surface_points import (
     laplace_offsets,
     points_on,
@@ -24,6 +25,7 @@ from nispcodec.geometry.surface_points import (
 from nispcodec.geometry.symmetry import asymmetric_samples
 
 TINY = np.finfo(np.float64).tiny
+BLOCK = 1 << 16
 
 
 class Sampler:
@@ -49,6 +51,44 @@ class Sampler:
         surface, _ = solid_surface(self._random, self.analysis.solid, count)
         return self._label(self._beside(surface, spread), signed)
 
+    def near_and_nearer(
+        self, count: int, spread: float, nearer: Sequence[tuple[int, float]]
+    ) -> tuple[SampleSet, ...]:
+        """`near_surface`, signed, and further sets without signs, at its distance queries alone.
+
+        `nearer` has the count and spread of each. They lie on the ways from the same points to the
+        surface, each at its share of the way: sets for networks of different kinds.
+        """
+        wanted = [(count, spread), *nearer]
+        most = max(number for number, wide in wanted if wide <= spread)
+        surface, _ = solid_surface(self._random, self.analysis.solid, most)
+        points = self._beside(surface, spread)
+        found: list[list[SampleSet]] = [[] for _ in wanted]
+        for number, (other, wide) in enumerate(wanted):
+            if wide > spread:
+                found[number].append(self.near_surface(other, wide, signed=False))
+        for start in range(0, len(points), BLOCK):
+            self._add_block(found, points[start : start + BLOCK], start, wanted)
+        return tuple(SampleSet.joined(tuple(each)) for each in found)
+
+    def _add_block(
+        self,
+        found: list[list[SampleSet]],
+        points: Float64Array,
+        start: int,
+        wanted: Sequence[tuple[int, float]],
+    ) -> None:
+        """Label points (n, 3), the first of them number `start`, for all sets that want them."""
+        field, spread = self.analysis.field, wanted[0][1]
+        signed, unsigned = field.both(points)
+        for number, (count, wide) in enumerate(wanted):
+            used = slice(max(count - start, 0))
+            if number == 0:
+                found[number].append(self._label.of(points[used], signed[used]))
+            elif wide <= spread:
+                moved, closest = field.nearer(points[used], unsigned[used], wide / spread)
+                found[number].append(self._label.of(moved, closest))
+
     def undersampled_charts(self, least: int, count: int, spread: float) -> SampleSet:
         """Samples beside patches that would get fewer than `least` of `count`: what they lack."""
         solid = self.analysis.solid
@@ -69,7 +109,7 @@ class Sampler:
         """
         depth, solid = self.config.thin_depth, self.analysis.solid
         surface, piece = solid_surface(self._random, solid, count)
-        behind = surface - depth * normals(solid.pieces[piece])
+        behind = surface - depth * solid.normals[piece]
         surface = surface[self.analysis.field.closest(behind).sdf > -depth / 4]
         again = surface.repeat(min(times, count // max(len(surface), 1)), axis=0)
         again += self._random.normal(scale=depth / 2, size=again.shape)

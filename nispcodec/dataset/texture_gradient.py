@@ -36,8 +36,8 @@ def _change(
     material: Material, image: Float32Array, uvs: Float64Array, step: float
 ) -> Float64Array:
     here = base_color(material, image, uvs)
-    squares = [
-        ((base_color(material, image, uvs + step * way) - here) ** 2).mean(axis=1)
-        for way in DIRECTIONS
-    ]
-    return np.sqrt(np.mean(squares, axis=0)).astype(np.float64)
+    total = np.zeros(len(uvs), dtype=np.float32)
+    for way in DIRECTIONS:
+        change = base_color(material, image, uvs + step * way) - here
+        total += np.einsum("nc,nc->n", change, change)
+    return np.sqrt(total / (here.shape[1] * len(DIRECTIONS))).astype(np.float64)

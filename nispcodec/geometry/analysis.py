@@ -14,11 +14,12 @@ from nispcodec.geometry.chart_merging import Cover, merge_charts
 from nispcodec.geometry.charts import Charts, split_charts
 from nispcodec.geometry.config import GeometryConfig, MergingConfig, SymmetryConfig
 from nispcodec.geometry.distance import DistanceField
-from nispcodec.geometry.labeling import Labeling, chart_table
+from nispcodec.geometry.labeling import Labeling, chart_table, with_openings
 from nispcodec.geometry.openings import crossings
 from nispcodec.geometry.solid import Solid, build_solid
 from nispcodec.geometry.surface_points import laplace_offsets, raised, solid_surface
 from nispcodec.geometry.symmetry import Symmetry, find_symmetry, folded, mirrored_charts
+from nispcodec.geometry.welding import welded
 
 
 @dataclass(frozen=True)
@@ -68,10 +69,12 @@ def analyze(
     random = np.random.default_rng([seed, 0])
     frame = normalizing_frame(mesh)
     corners = frame.to_normalized(mesh.corners)
-    field = DistanceField(build_solid(corners, config.solid), config.solid.sheet_lift)
-    patches = split_charts(mesh)
+    welding = welded(mesh)
+    solid = build_solid(corners, welding, config.solid)
+    field = DistanceField(solid, config.solid)
+    patches = split_charts(mesh, welding)
     if config.merging:
-        patches = split_self_seams(mesh, patches)
+        patches = split_self_seams(mesh.corners, welding, patches)
     table = chart_table(mesh, patches, config.filled_atlas)
     label = Labeling(field, corners, mesh.corner_uvs, patches, table)
     symmetry = find_symmetry(label, config.symmetry)
@@ -82,7 +85,7 @@ def analyze(
         label = replace(label, charts=charts, table=table)
         closing = _closing_points(field, random, config)
     if len(closing):
-        label = replace(label, table=_with_openings(table))
+        label = replace(label, table=with_openings(table))
     return Analysis(mesh, frame, patches, label, symmetry, closing, config)
 
 
@@ -127,13 +130,3 @@ def _closing_points(
     # As labels have them: the single precision of samples.
     found = crossings(field, probes.astype(np.float32).astype(np.float64), random, config.openings)
     return found if len(found) >= config.openings.notable * len(probes) else found[:0]
-
-
-def _with_openings(table: ChartTable) -> ChartTable:
-    """The table with one chart more, that of the openings."""
-    return replace(
-        table,
-        materials=np.append(table.materials, np.int32(0)),
-        has_uv=np.append(table.has_uv, False),
-        openings=True,
-    )

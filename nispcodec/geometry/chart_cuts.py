@@ -13,22 +13,23 @@ from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components, dijkstra
 
 from nispcodec.core.arrays import Float64Array, Int64Array, IntArray
-from nispcodec.core.asset import TexturedMesh
 from nispcodec.core.connectivity import connected_faces, row_ids
-from nispcodec.geometry.charts import Charts, colored, uv_ids
+from nispcodec.geometry.charts import Charts, colored
+from nispcodec.geometry.welding import Welding
 
 
-def split_self_seams(mesh: TexturedMesh, charts: Charts) -> Charts:
+def split_self_seams(points: Float64Array, welding: Welding, charts: Charts) -> Charts:
     """The charts, with those that meet themselves cut so that no seam has one chart on both sides.
 
     Corners along one side of a seam belong together, corners across it apart: a graph coloring of
-    the sides. Each face goes with the side that is nearest along edges (Dijkstra).
+    the sides. Each face goes with the side that is nearest along edges (Dijkstra). `points`
+    (m, 3, 3) are the corners of the faces, in any frame.
     """
-    corners = _corners(mesh, charts)
-    seams = _seams(mesh, corners)
+    corners = welding.corners
+    seams = _seams(welding.positions, corners, charts.face_charts)
     if not len(seams.one):
         return charts
-    color = _face_colors(mesh, corners, seams)
+    color = _face_colors(points, corners, seams)
     parts = np.stack([corners, np.repeat(color[:, None], 3, axis=1)], axis=2)
     labels = connected_faces(row_ids(parts.reshape(-1, 2)).reshape(-1, 3))
     first = np.unique(labels, return_index=True)[1]
@@ -44,22 +45,13 @@ class _Seams:
     other: Int64Array
 
 
-def _corners(mesh: TexturedMesh, charts: Charts) -> Int64Array:
-    """(m, 3): the same number where chart, position and UV are the same."""
-    position = row_ids(mesh.positions)[mesh.faces]
-    chart = np.repeat(charts.face_charts[:, None], 3, axis=1)
-    corners = np.stack([chart, position, uv_ids(mesh)], axis=2)
-    return row_ids(corners.reshape(-1, 3)).reshape(-1, 3)
-
-
-def _seams(mesh: TexturedMesh, corners: Int64Array) -> _Seams:
+def _seams(position: Int64Array, corners: Int64Array, charts: IntArray) -> _Seams:
     """Pair the face sides that join the same two positions within one chart."""
-    position = row_ids(mesh.positions)[mesh.faces]
     places = np.stack([position, np.roll(position, -1, axis=1)], axis=2).reshape(-1, 2)
     ends = np.stack([corners, np.roll(corners, -1, axis=1)], axis=2).reshape(-1, 2)
     swap = places[:, 0] > places[:, 1]
     places[swap], ends[swap] = places[swap, ::-1], ends[swap, ::-1]
-    chart = _chart_of_corner(corners, ends)
+    chart = np.repeat(charts, 3)
     order = np.lexsort((places[:, 1], places[:, 0], chart))
     keys = np.column_stack([chart, places])[order]
     paired = (keys[1:] == keys[:-1]).all(axis=1)
@@ -68,17 +60,10 @@ def _seams(mesh: TexturedMesh, corners: Int64Array) -> _Seams:
     return _Seams(one[jumps], other[jumps])
 
 
-def _chart_of_corner(corners: Int64Array, ends: Int64Array) -> IntArray:
-    """Which connected patch, so which chart, the face sides belong to."""
-    patch = np.empty(int(corners.max()) + 1, dtype=np.int32)
-    patch[corners] = connected_faces(corners)[:, None]
-    return patch[ends[:, 0]]
-
-
-def _face_colors(mesh: TexturedMesh, corners: Int64Array, seams: _Seams) -> Int64Array:
+def _face_colors(points: Float64Array, corners: Int64Array, seams: _Seams) -> Int64Array:
     """The color (m,) of the nearest seam side; 0 on charts that do not meet themselves."""
     sources, color = _side_colors(seams)
-    distance, nearest = _nearest(mesh, corners, sources)
+    distance, nearest = _nearest(points, corners, sources)
     of_corner = np.zeros(len(distance), dtype=np.int64)
     of_corner[sources] = color
     reached = nearest >= 0
@@ -112,11 +97,10 @@ def _side_colors(seams: _Seams) -> tuple[Int64Array, Int64Array]:
 
 
 def _nearest(
-    mesh: TexturedMesh, corners: Int64Array, sources: Int64Array
+    points: Float64Array, corners: Int64Array, sources: Int64Array
 ) -> tuple[Float64Array, Int64Array]:
     """Of every corner the distance along edges to the nearest source, and which (-1: none)."""
     ends = np.stack([corners, np.roll(corners, -1, axis=1)], axis=2).reshape(-1, 2)
-    points = mesh.corners
     lengths = np.linalg.norm(points - np.roll(points, -1, axis=1), axis=2).reshape(-1)
     unique, first = np.unique(np.sort(ends, axis=1), axis=0, return_index=True)
     size = int(corners.max()) + 1

@@ -8,9 +8,9 @@ from typing import TypeVar
 
 import numpy as np
 
-from nispcodec.core.arrays import BoolArray, Int32Array, Int64Array
+from nispcodec.core.arrays import BoolArray, Int32Array
 from nispcodec.core.asset import TexturedMesh
-from nispcodec.core.connectivity import connected_faces, row_ids
+from nispcodec.geometry.welding import Welding
 
 Kind = TypeVar("Kind")
 
@@ -32,18 +32,12 @@ class Charts:
         return len(self.materials)
 
 
-def split_charts(mesh: TexturedMesh) -> Charts:
+def split_charts(mesh: TexturedMesh, welding: Welding) -> Charts:
     """Label every face with its chart; the faces of one material without UV make one chart.
 
-    Positions and UVs are compared by value, so that vertices which a file format had to split
-    (glTF) still connect. Charts are numbered by their first face.
+    Charts are numbered by their first face.
     """
-    position = row_ids(mesh.positions)[mesh.faces]
-    uv = uv_ids(mesh)
-    position = np.where(uv < 0, -1, position)
-    material = np.repeat(mesh.face_materials[:, None], 3, axis=1)
-    corners = row_ids(np.stack([material, position, uv], axis=-1).reshape(-1, 3))
-    labels = connected_faces(corners.reshape(-1, 3))
+    labels = welding.patches
     first = np.unique(labels, return_index=True)[1]
     return Charts(labels, mesh.face_materials[first], mesh.has_uv[first])
 
@@ -71,10 +65,3 @@ def colored(
             kind_of_color.append(kinds[node])
         color[node] = choose(node, alike)
     return color, kind_of_color
-
-
-def uv_ids(mesh: TexturedMesh) -> Int64Array:
-    """(m, 3) int64, a number for each face corner: equal for equal UVs, -1 on faces without UV."""
-    if not len(mesh.uvs):
-        return np.full(mesh.faces.shape, -1, dtype=np.int64)
-    return np.where(mesh.has_uv[:, None], row_ids(mesh.uvs)[mesh.uv_faces], -1)

@@ -20,6 +20,15 @@ class SolidConfig:
     doubt             a winding number so near to a half beside a face tells no side
     winding_accuracy  of libigl's fast winding number: half the time of its default of 2; of
                       200,000 probes around a helmet of 82 bodies one moved across 1/2
+    rough_accuracy    the same where the side is clear, in 0.4 of the time: one in a hundred is
+                      off by more than 0.1, none of 400,000 by more than 0.55 ...
+    rough_margin      ... so that those so near to a half are looked at again
+    facing            cosine from which on the closest piece tells the side of a point: only walls
+                      that meet at less than 25 degrees could be mistaken
+    whole             a piece tells none unless winding numbers beside it are so near to whole ones
+    gap_margin        ... nor points so much further away than the nearest gap or rim: pieces that
+                      are hidden in part leave gaps of up to half `fine_edge`
+    rim_step          the rim of openings is looked at so often
     open_share        a body whose exposed openings have this share of its area is open
     undecided         an opening is exposed where the winding number is so near to a half ...
     plugged_gap       ... and the mesh further away than this
@@ -36,6 +45,12 @@ class SolidConfig:
     fine_edge: float = 0.03
     doubt: float = 0.05
     winding_accuracy: float = 1.5
+    rough_accuracy: float = 1.0
+    rough_margin: float = 0.25
+    facing: float = 0.9
+    whole: float = 0.1
+    gap_margin: float = 0.01
+    rim_step: float = 0.02
     open_share: float = 0.25
     undecided: float = 0.2
     plugged_gap: float = 0.02

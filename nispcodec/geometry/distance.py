@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import igl
 import numpy as np
 
 from nispcodec.core.arrays import BoolArray, Float64Array, Int64Array
 from nispcodec.geometry.config import SolidConfig
-from nispcodec.geometry.solid import Solid, normals
+from nispcodec.geometry.solid import Solid
 from nispcodec.geometry.z_order import z_order
+
+NEAREST = np.sqrt(np.finfo(np.float64).eps)
 
 
 @dataclass(frozen=True)
@@ -20,11 +22,16 @@ class Closest:
     sdf    (n,) signed distance, negative inside
     piece  (n,) index of the closest piece of the solid
     point  (n, 3) the closest point on it
+    sheet  (n,) bool: whether that is on an open surface, which ends half its thickness further out
     """
 
     sdf: Float64Array
     piece: Int64Array
     point: Float64Array
+    sheet: BoolArray
+
+    def __getitem__(self, chosen: Int64Array | slice) -> Closest:
+        return Closest(self.sdf[chosen], self.piece[chosen], self.point[chosen], self.sheet[chosen])
 
 
 class DistanceField:
@@ -32,13 +39,14 @@ class DistanceField:
 
     Normalized frame. libigl's own signed distance scales magnitudes by the winding number, so
     magnitude and sign are computed apart: exact point-triangle distance, and inside where |winding
-    number| > 1/2 (Jacobson et al. 2013).
+    number| > 1/2 (Jacobson et al. 2013). Where the closest wall faces a point it tells the side at
+    no cost: no surface is between them.
     """
 
-    def __init__(self, solid: Solid, sheet_lift: float = SolidConfig.sheet_lift) -> None:
-        self.solid = solid
+    def __init__(self, solid: Solid, config: SolidConfig = SolidConfig()) -> None:
+        self.solid, self._facing = solid, config.facing
         self._walls = _Tree(solid.pieces, solid.wall)
-        lifted = solid.pieces + sheet_lift * normals(solid.pieces)[:, None]
+        lifted = solid.pieces + config.sheet_lift * solid.normals[:, None]
         self._sheets = _Tree(lifted, solid.open_surface)
 
     def closest(self, points: Float64Array, signed: bool = True) -> Closest:
@@ -46,21 +54,80 @@ class DistanceField:
 
         Without `signed` all of space counts as outside, which saves most of the time.
         """
+        return self._ordered(points, (signed,))[0]
+
+    def both(self, points: Float64Array) -> tuple[Closest, Closest]:
+        """`closest` of points (n, 3) with signs, and without, for hardly more than one of them."""
+        signed, unsigned = self._ordered(points, (True, False))
+        return signed, unsigned
+
+    def _ordered(self, points: Float64Array, signs: tuple[bool, ...]) -> list[Closest]:
         points = np.ascontiguousarray(points, dtype=np.float64)
-        walls, sheets = self._walls.closest(points), self._sheets.closest(points)
-        inside = self.inside(points) if signed else np.zeros(len(points), dtype=bool)
-        distance = np.where(inside, -walls.sdf, walls.sdf)
+        order = z_order(points)
+        back = np.empty_like(order)
+        back[order] = np.arange(len(order))
+        ordered = points[order]
+        walls, sheets = self._walls.closest(ordered), self._sheets.closest(ordered)
+        found = []
+        for signed in signs:
+            sdf = walls.sdf.copy()
+            if signed:
+                sdf[self._inside(ordered, walls)] *= -1
+            found.append(self._thickened(replace(walls, sdf=sdf), sheets)[back])
+        return found
+
+    def _thickened(self, walls: Closest, sheets: Closest) -> Closest:
+        """The walls, and sheets where they are nearer."""
         thick = sheets.sdf - self.solid.half_thickness
-        nearer = thick < distance
+        nearer = thick < walls.sdf
+        if not nearer.any():
+            return walls
         return Closest(
-            sdf=np.where(nearer, thick, distance),
-            piece=np.where(nearer, sheets.piece, walls.piece),
-            point=np.where(nearer[:, None], sheets.point, walls.point),
+            np.where(nearer, thick, walls.sdf),
+            np.where(nearer, sheets.piece, walls.piece),
+            np.where(nearer[:, None], sheets.point, walls.point),
+            nearer,
         )
+
+    def nearer(
+        self, points: Float64Array, closest: Closest, share: float
+    ) -> tuple[Float64Array, Closest]:
+        """Points (n, 3) moved to a share of their distance, and what is closest to them, unsigned.
+
+        They move on the way to their closest points. `closest` has no signs. No query is needed, as
+        a ball around a point that ends at the surface is empty; but for points within thickened
+        surfaces, which move out of them.
+        """
+        skin = np.where(closest.sheet, self.solid.half_thickness, 0.0)
+        length = np.maximum(closest.sdf + skin, NEAREST)
+        scale = (share * closest.sdf + skin) / length
+        moved = closest.point + (points - closest.point) * scale[:, None]
+        found = replace(closest, sdf=share * closest.sdf)
+        within = np.flatnonzero(closest.sdf < 0)
+        if not len(within):
+            return moved, found
+        again = self.closest(moved[within], signed=False)
+        for name, values in vars(found).items():
+            values = values.copy()
+            values[within] = getattr(again, name)
+            found = replace(found, **{name: values})
+        return moved, found
+
+    def _inside(self, points: Float64Array, walls: Closest) -> BoolArray:
+        """As `inside`, by the closest walls where they tell: these are unsigned, as yet."""
+        solid, away = self.solid, points - walls.point
+        along = np.einsum("nx,nx->n", away, solid.normals[walls.piece])
+        told = np.abs(along) > self._facing * walls.sdf
+        # Next to a wall the way to it is lost in rounding.
+        told &= (walls.sdf < solid.reach[walls.piece]) & (walls.sdf > NEAREST)
+        found = (along > 0) == solid.inside_front[walls.piece]
+        rest = np.flatnonzero(~told)
+        found[rest] = self.inside(points[rest])
+        return found
 
     def inside(self, points: Float64Array) -> BoolArray:
         """(n,) bool: which points (n, 3) lie inside the bodies; open surfaces are left out."""
-        return np.abs(self.solid.winding.at(points)) > 0.5
+        return np.abs(self.solid.winding.about(points)) > 0.5
 
 
 class _Tree:
@@ -72,15 +139,16 @@ class _Tree:
         self.vertices = np.ascontiguousarray(triangles.reshape(-1, 3))
         self.faces = np.arange(3 * len(triangles), dtype=np.int64).reshape(-1, 3)
         self.tree = igl.AABB()
-        if len(self.faces):
+        self.count = len(self.faces)
+        if self.count:
             self.tree.init(self.vertices, self.faces)
 
     def closest(self, points: Float64Array) -> Closest:
-        if not len(self.faces) or not len(points):
+        """Of points (n, 3), best in the order of space."""
+        if not self.count or not len(points):
             nowhere = np.zeros(len(points), dtype=np.int64)
-            return Closest(np.full(len(points), np.inf), nowhere, np.zeros_like(points))
-        order = z_order(points)
-        back = np.argsort(order)
-        found = self.tree.squared_distance(self.vertices, self.faces, points[order])
-        squared, face, point = (each[back] for each in found)
-        return Closest(np.sqrt(squared), self.index[face], point)
+            away = np.full(len(points), np.inf)
+            return Closest(away, nowhere, np.zeros_like(points), nowhere > 0)
+        squared, face, point = self.tree.squared_distance(self.vertices, self.faces, points)
+        on_sheet = np.zeros(len(points), dtype=bool)
+        return Closest(np.sqrt(squared), self.index[face], point, on_sheet)

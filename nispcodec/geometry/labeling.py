@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -37,7 +37,10 @@ class Labeling:
 
         Without `signed` all of space counts as outside, which saves most of the time.
         """
-        closest = self.field.closest(points, signed)
+        return self.of(points, self.field.closest(points, signed))
+
+    def of(self, points: Float64Array, closest: Closest) -> SampleSet:
+        """The labels of points (n, 3) of which is known what is closest."""
         face = self.field.solid.parents[closest.piece]
         return SampleSet(
             points=points.astype(np.float32),
@@ -72,4 +75,14 @@ def chart_table(mesh: TexturedMesh, charts: Charts, filled: float) -> ChartTable
         charts.has_uv,
         uv_offset=(float(low[0]), float(low[1])),
         uv_scale=(float(scale[0]), float(scale[1])),
+    )
+
+
+def with_openings(table: ChartTable) -> ChartTable:
+    """The table with one chart more, that of the openings."""
+    return replace(
+        table,
+        materials=np.append(table.materials, np.int32(0)),
+        has_uv=np.append(table.has_uv, False),
+        openings=True,
     )

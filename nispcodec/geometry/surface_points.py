@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from nispcodec.core.arrays import Float64Array, Int64Array
-from nispcodec.geometry.solid import Solid, area, normals
+from nispcodec.geometry.solid import Solid, area
 
 TINY = np.finfo(np.float64).tiny
 
@@ -18,12 +18,12 @@ def barycentric(triangles: Float64Array, points: Float64Array) -> Float64Array:
     ab, ac = triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0]
     ap = points - triangles[:, 0]
     bb, bc, cc, pb, pc = (
-        (p * q).sum(axis=1) for p, q in ((ab, ab), (ab, ac), (ac, ac), (ap, ab), (ap, ac))
+        np.einsum("nx,nx->n", p, q) for p, q in ((ab, ab), (ab, ac), (ac, ac), (ap, ab), (ap, ac))
     )
     determinant = np.maximum(bb * cc - bc * bc, TINY)
     v, w = (cc * pb - bc * pc) / determinant, (bb * pc - bc * pb) / determinant
-    weights = np.clip(np.stack([1 - v - w, v, w], axis=1), 0.0, 1.0)
-    return weights / weights.sum(axis=1, keepdims=True)
+    a, b, c = (np.clip(each, 0.0, 1.0) for each in (1 - v - w, v, w))
+    return np.stack([a, b, c], axis=1) / (a + b + c)[:, None]
 
 
 def random_barycentric(random: np.random.Generator, count: int) -> Float64Array:
@@ -71,7 +71,7 @@ def raised(
     thick = np.flatnonzero(solid.open_surface[piece])
     on = piece[thick]
     side = np.where(solid.wall[on] | (random.random(len(on)) < 0.5), 1.0, -1.0)
-    points[thick] += (solid.half_thickness * side)[:, None] * normals(solid.pieces[on])
+    points[thick] += (solid.half_thickness * side)[:, None] * solid.normals[on]
     return points
 
 
@@ -85,9 +85,10 @@ def laplace_offsets(
     cube [-limit, limit]^3 are left out, so that k may be less than n.
     """
     direction = random.normal(size=surface.shape)
-    direction /= np.linalg.norm(direction, axis=1, keepdims=True)
-    points = surface + direction * random.gamma(2.0, spread, size=(len(surface), 1))
-    return points[np.abs(points).max(axis=1) <= limit]
+    length = np.sqrt(np.einsum("nx,nx->n", direction, direction))
+    points = surface + direction * (random.gamma(2.0, spread, len(surface)) / length)[:, None]
+    x, y, z = np.abs(points).T
+    return points[(x <= limit) & (y <= limit) & (z <= limit)]
 
 
 def uniform_ball(random: np.random.Generator, count: int) -> Float64Array:

@@ -144,3 +144,22 @@ def test_barycentric_coordinates_rebuild_the_point() -> None:
     weights = random.dirichlet(np.ones(3), 40)
     points = np.einsum("nc,ncx->nx", weights, triangles)
     assert barycentric(triangles, points) == pytest.approx(weights)
+
+
+def test_nearer_sets_are_spread_as_sets_of_their_own_are() -> None:
+    sampler = sampler_of(box_asset(), seed=0)
+    wide, near = sampler.near_and_nearer(9000, 0.02, [(8000, 0.005)])
+    own = sampler.near_surface(8000, 0.005, signed=False)
+    assert len(wide) <= 9000
+    assert (wide.sdf < 0).mean() == pytest.approx(0.5, abs=0.1)
+    assert near.sdf.min() >= 0
+    assert near.sdf.mean() == pytest.approx(own.sdf.mean(), rel=0.05)
+    assert np.bincount(near.chart) / 8000 == pytest.approx(np.bincount(own.chart) / 8000, abs=0.02)
+    again = sampler.analysis.label(near.points.astype(np.float64), signed=False)
+    assert near.sdf == pytest.approx(again.sdf, abs=1e-6)
+    assert (near.chart == again.chart).mean() > 0.995
+
+
+def test_a_set_that_is_not_nearer_is_drawn_by_itself() -> None:
+    wide = sampler_of(box_asset(), seed=0).near_and_nearer(500, 0.005, [(400, 0.05)])[1]
+    assert wide.sdf.mean() > 0.02

@@ -7,6 +7,7 @@ import numpy as np
 from nispcodec.core.asset import TexturedMesh
 from nispcodec.geometry.chart_cuts import split_self_seams
 from nispcodec.geometry.charts import Charts, split_charts
+from nispcodec.geometry.welding import welded
 from tests.geometry.shapes import box_asset, hemisphere, soup
 
 
@@ -40,17 +41,17 @@ def self_seams(mesh: TexturedMesh, charts: Charts) -> int:
 
 def test_a_closed_cylinder_is_cut_in_two() -> None:
     mesh = soup(*unrolled())
-    charts = split_charts(mesh)
+    charts = split_charts(mesh, welded(mesh))
     assert (len(charts), self_seams(mesh, charts)) == (1, 1)
-    cut = split_self_seams(mesh, charts)
+    cut = split_self_seams(mesh.corners, welded(mesh), charts)
     assert (len(cut), self_seams(mesh, cut)) == (2, 0)
     assert 4 < (cut.face_charts == 0).sum() < 20
 
 
 def test_an_open_arc_stays_whole() -> None:
     mesh = soup(*unrolled(turns=0.8))
-    charts = split_charts(mesh)
-    assert split_self_seams(mesh, charts) is charts
+    charts = split_charts(mesh, welded(mesh))
+    assert split_self_seams(mesh.corners, welded(mesh), charts) is charts
 
 
 def test_a_dome_with_one_cut_from_pole_to_rim() -> None:
@@ -63,19 +64,19 @@ def test_a_dome_with_one_cut_from_pole_to_rim() -> None:
     angle[wide] = np.where(angle[wide] < np.pi, angle[wide] + 2 * np.pi, angle[wide])
     angle[pole] = 0
     mesh = soup(triangles, np.stack([angle, triangles[..., 2]], axis=2))
-    charts = split_charts(mesh)
+    charts = split_charts(mesh, welded(mesh))
     assert self_seams(mesh, charts) > 0
-    assert self_seams(mesh, split_self_seams(mesh, charts)) == 0
+    assert self_seams(mesh, split_self_seams(mesh.corners, welded(mesh), charts)) == 0
 
 
 def test_charts_of_a_box_and_their_materials_are_left_alone() -> None:
-    charts = split_charts(box_asset())
-    assert split_self_seams(box_asset(), charts) is charts
+    charts = split_charts(box_asset(), welded(box_asset()))
+    assert split_self_seams(box_asset().corners, welded(box_asset()), charts) is charts
 
 
 def test_a_cut_chart_keeps_its_material() -> None:
     triangles, uvs = unrolled()
     mesh = soup(triangles, uvs)
-    cut = split_self_seams(mesh, split_charts(mesh))
+    cut = split_self_seams(mesh.corners, welded(mesh), split_charts(mesh, welded(mesh)))
     assert cut.materials.tolist() == [0, 0]
     assert cut.has_uv.all()

@@ -10,6 +10,7 @@ from nispcodec.core.asset import TexturedMesh
 from nispcodec.geometry.analysis import Analysis
 from nispcodec.geometry.charts import split_charts
 from nispcodec.geometry.labeling import chart_table
+from nispcodec.geometry.welding import welded
 from tests.geometry.shapes import box_asset
 from tests.samplers import analysis_of
 
@@ -60,7 +61,7 @@ def test_charts_without_uv_are_labeled_with_zeros() -> None:
 
 
 def table_of(mesh: TexturedMesh, filled: float = 0.5) -> tuple[Float64Array, Float64Array]:
-    table = chart_table(mesh, split_charts(mesh), filled)
+    table = chart_table(mesh, split_charts(mesh, welded(mesh)), filled)
     return np.array(table.uv_offset), np.array(table.uv_scale)
 
 

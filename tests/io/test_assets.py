@@ -8,6 +8,7 @@ import pytest
 
 from nispcodec.geometry.charts import split_charts
 from nispcodec.geometry.symmetry import Symmetry
+from nispcodec.geometry.welding import welded
 from nispcodec.io.load import load_mesh
 from tests.samplers import analysis_of
 
@@ -35,7 +36,7 @@ def test_real_asset(name: str) -> None:
     mesh = load_mesh(path)
     found = (
         len(mesh.faces),
-        len(split_charts(mesh)),
+        len(split_charts(mesh, welded(mesh))),
         len(mesh.materials),
         len(mesh.textures),
         set(mesh.materials[0].maps),

@@ -9,6 +9,7 @@ import pytest
 from nispcodec.core.arrays import Float64Array, Int64Array
 from nispcodec.core.asset import TexturedMesh
 from nispcodec.geometry.charts import split_charts
+from nispcodec.geometry.welding import welded
 from nispcodec.io.cleanup import clean
 from nispcodec.procedural.mug import sample_asset
 
@@ -20,7 +21,7 @@ def mug() -> TexturedMesh:
 
 def test_it_is_what_the_readme_promises(mug: TexturedMesh) -> None:
     assert 5_000 <= len(mug.faces) <= 10_000
-    assert len(split_charts(mug)) == 7
+    assert len(split_charts(mug, welded(mug))) == 7
     assert [material.name for material in mug.materials] == ["glaze", "wood"]
     assert "normal" in mug.materials[1].maps
     assert mug.has_uv.all()
@@ -38,7 +39,7 @@ def test_bodies_are_closed_and_face_outwards(mug: TexturedMesh) -> None:
     assert len(there) == len(edges)
     a, b, c = np.moveaxis(mug.corners, 1, 0)
     volumes = np.einsum("ij,ij->i", a, np.cross(b, c)) / 6
-    charts = split_charts(mug).face_charts
+    charts = split_charts(mug, welded(mug)).face_charts
     for body in ([0, 1, 2, 3], [4], [5, 6]):
         assert volumes[np.isin(charts, body)].sum() > 1
 
