@@ -212,7 +212,9 @@ TESTED_ELSEWHERE = {
     "encode/fitting.py": "encode/test_targets.py",
     "encode/report.py": "encode/test_recipe.py",
     "geometry/analysis.py": "dataset/test_sampler.py",
+    "geometry/enclosing.py": "geometry/test_bodies.py",
     "geometry/reach.py": "geometry/test_distance.py",
+    "geometry/winding.py": "geometry/test_distance.py",
     "geometry/surface_points.py": "dataset/test_sampler.py",
     # Steps of a decode.
     "extract/components.py": "extract/test_isosurface.py",

@@ -22,6 +22,8 @@ def test_encode_writes_and_reports(encoder: Encoder, mesh: Path, tmp_path: Path)
     assert report["input_bytes"]["textures"] > 0
     assert (seen["config"].seed, seen["config"].textures) == (7, False)
     assert "diverged at step 11" in result.stderr
+    assert "nisp: warning: mug: turned faces" in result.stderr
+    assert report["warnings"][-1] == "mug: turned faces"
 
 
 @pytest.mark.parametrize(

@@ -128,3 +128,13 @@ def test_stages_and_networks_are_reported() -> None:
     stages = list(dict.fromkeys(progress.stage for progress in seen if not progress.network))
     assert stages[:4] == ["textures", "charts and hidden walls", "samples", "fit"]
     assert stages[4:] == ["probe how much there is to learn"]
+
+
+def test_faces_the_wrong_way_round_are_told_of() -> None:
+    corners = cube((0, 0, 0), 1.0)
+    corners[:2] = corners[:2, ::-1]
+    told: list[str] = []
+    encode(bare(soup(corners)), progress=lambda update: told.append(update.warning))
+    (warning,) = filter(None, told)
+    assert "turned faces" in warning
+    assert "16.67% of the area" in warning
