@@ -27,10 +27,12 @@ def free_faces(corners: Float64Array, bodies: Bodies, config: SolidConfig) -> Bo
     size = np.maximum(size, TINY)
     opening, owner = _openings(corners, bodies)
     areas = area(opening)
-    exposed = _exposed(shown, opening, config)
+    all_open = np.bincount(owner, areas, len(size))
+    # The others cannot be open, exposed or not: most meshes have none to ask for.
+    asked = np.flatnonzero((all_open / size > config.open_share)[owner])
+    exposed = asked[_exposed(shown, opening[asked], config)] if len(asked) else asked
     open_area = np.bincount(owner[exposed], areas[exposed], len(size))
     is_open = open_area / size > config.open_share
-    all_open = np.bincount(owner, areas, len(size))
     is_sheet = all_open / size > config.card_share
     rim = _Rim(opening[:, :2].mean(axis=1), owner)
     mask: BoolArray = _with_sheets(shown, body, is_sheet, is_open, rim, config)[bodies.body]

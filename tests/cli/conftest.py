@@ -21,7 +21,6 @@ Encoder = Callable[[Document | BaseException], dict[str, Any]]
 """Takes what an encode ends in, and tells later what it was asked."""
 
 UPDATES = [
-    Progress(stage="charts and hidden walls", overall=0.0, warning="mug: turned faces"),
     Progress(stage="samples", overall=0.0),
     Progress("sdf", "fit", 10, 100, loss=0.5, error=1e-3, seconds_left=75, overall=0.12),
     Progress("sdf", "fit", 11, 100, loss=0.4, note="diverged at step 11, retrying", overall=0.13),
