@@ -29,8 +29,8 @@ class SolidConfig:
     gap_margin        ... nor points so much further away than the nearest gap or rim: pieces that
                       are hidden in part leave gaps of up to half `fine_edge`
     rim_step          the rim of openings is looked at so often
-    weld              positions at rims that are nearer than this are one: rounding of numbers of
-                      single precision, and of six digits, opens seams
+    weld              positions at rims that are nearer than this are one: rounding to single
+                      precision opens seams; at 1e-5 thin parts of a real asset were joined
     clear_majority    an open patch, of which some was wound against the rest, is the right way
                       round with such a majority of its area
     bulge             an open patch that holds such a volume, for its area^1.5, has an outside: a
@@ -64,7 +64,7 @@ class SolidConfig:
     whole: float = 0.1
     gap_margin: float = 0.01
     rim_step: float = 0.02
-    weld: float = 1e-5
+    weld: float = 1e-6
     clear_majority: float = 0.2
     bulge: float = 0.02
     crossing: float = 0.02
