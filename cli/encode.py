@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import shutil
 import time
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -23,6 +24,7 @@ from .subcommand import force_option, json_option, subcommand
 
 if TYPE_CHECKING:
     from nispcodec.core.asset import TexturedMesh
+    from nispcodec.core.progress import Listener, Progress
     from nispcodec.encode.config import EncodeConfig
     from nispcodec.model import NispModel
 
@@ -105,14 +107,28 @@ def command(
     asset = _loaded(mesh, unwrap)
     warn(asset.warnings)
     _expect_possible(asset, config, output)
+    found: list[str] = []
     with shown("encode", progress, quiet) as listen:
-        model = nispcodec.encode(asset, config, progress=listen)
+        model = nispcodec.encode(asset, config, progress=_with_warnings(listen, found))
+    warn(found)
+    asset = replace(asset, warnings=(*asset.warnings, *found))
     nispcodec.save(model, output)
     report = _report(model, asset, mesh, output, time.monotonic() - started)
     if as_json:
         print_json(report)
     else:
         _print_report(report)
+
+
+def _with_warnings(listen: Listener, found: list[str]) -> Listener:
+    """The listener, with what is warned of added to `found`: bars would be drawn over it."""
+
+    def heard(update: Progress) -> None:
+        if update.warning:
+            found.append(update.warning)
+        listen(update)
+
+    return heard
 
 
 def _loaded(path: Path, unwrap: bool) -> TexturedMesh:

@@ -44,10 +44,13 @@ def apart(make: Callable[[TexturedMesh], TexturedMesh], mesh: TexturedMesh) -> T
 
 
 def with_collapsed_named(mesh: TexturedMesh) -> TexturedMesh:
-    """The mesh with a warning for faces whose UVs have no area."""
-    a, b, c = mesh.corner_uvs.transpose(1, 0, 2)
+    """The mesh with a warning for faces that have an area, but none in their UVs."""
+    import numpy as np
+
+    (a, b, c), (p, q, r) = mesh.corner_uvs.transpose(1, 0, 2), mesh.corners.transpose(1, 0, 2)
     u, v = b - a, c - a
-    collapsed = int((u[:, 0] * v[:, 1] == u[:, 1] * v[:, 0]).sum())
+    flat = u[:, 0] * v[:, 1] == u[:, 1] * v[:, 0]
+    collapsed = int((flat & (np.cross(q - p, r - p) != 0).any(axis=1)).sum())
     if not collapsed:
         return mesh
     warning = (

@@ -52,8 +52,8 @@ def encoded(mesh: TexturedMesh, preset: str, seed: int, share: float) -> Record:
     notes: list[str] = []
 
     def heard(update: Progress) -> None:
-        if "warning" in update.note or "diverged" in update.note:
-            notes.append(f"{update.network} {update.note}")
+        if update.warning or "diverged" in update.note:
+            notes.append(f"{update.network} {update.warning}{update.note}")
 
     started = time.monotonic()
     try:

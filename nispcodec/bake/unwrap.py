@@ -9,6 +9,11 @@ import numpy as np
 from nispcodec.core.asset import TexturedMesh
 from nispcodec.core.extras import require
 
+ATLAS_SCALE = 1000.0
+"""The extent that a mesh is given for xatlas 0.0.11: triangles of less than about 1.2e-7 square
+units are degenerate to it, and get UVs of one point; in a unit box those are of many a small part.
+"""
+
 
 def unwrap(mesh: TexturedMesh) -> TexturedMesh:
     """New UVs in [0, 1] without overlaps, by xatlas; faces, positions and materials stay.
@@ -19,9 +24,9 @@ def unwrap(mesh: TexturedMesh) -> TexturedMesh:
     require("xatlas", extra="unwrap", what_for="unwrapping")
     import xatlas
 
-    # Large or far-away coordinates would not survive float32.
+    # Far-away coordinates would not survive float32.
     center, radius = mesh.positions.mean(axis=0), np.ptp(mesh.positions, axis=0).max() or 1.0
-    moved = ((mesh.positions - center) / radius).astype(np.float32)
+    moved = ((mesh.positions - center) * (ATLAS_SCALE / radius)).astype(np.float32)
     _, corners, uvs = xatlas.parametrize(moved, mesh.faces.astype(np.uint32))
     return replace(
         _without_maps(mesh),

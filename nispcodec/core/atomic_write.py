@@ -13,8 +13,9 @@ def write_atomic(path: Path, data: bytes) -> None:
     """Write to a temporary file beside `path`, flush it to disk, rename it over `path`.
 
     Permissions are those of a new file. Raises NispError, and leaves what was there, when the
-    folder cannot be written.
+    folder cannot be written, or `path` has a character that no path can have.
     """
+    expect_path(path)
     try:
         handle, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
     except OSError as why:
@@ -31,6 +32,12 @@ def write_atomic(path: Path, data: bytes) -> None:
         raise NispError(f"{path}: cannot be written: {why.strerror}") from why
     finally:
         temporary.unlink(missing_ok=True)
+
+
+def expect_path(path: str | Path) -> None:
+    """Raises NispError for a path with NUL, which no file system has, and no call of it takes."""
+    if "\0" in str(path):
+        raise NispError(f"{str(path)!r}: expected a path without NUL, found one with it")
 
 
 def _umask() -> int:

@@ -28,20 +28,18 @@ def cell_ids(*tables: AnyArray) -> Int64Array:
     return row_ids(stacked.reshape(-1, len(tables))).reshape(stacked.shape[:2])
 
 
-def rim(corners: Int64Array) -> tuple[Int64Array, Int32Array]:
-    """(m, 3) corner numbers from 0 up -> the b sides of faces that no other side cancels, loops.
+def edge_ids(corners: Int64Array) -> tuple[Int64Array, Int64Array]:
+    """(m, 3) corner numbers from 0 up -> of the 3 m sides of faces, edge and way (3 m,) int64.
 
-    sides (b,) int64, into the 3 m sides, each from a corner to the next; loops (b,) int32: sides
-    that corners connect share a number.
+    Sides run from each corner to the next; those between the same two corners, either way, are of
+    one edge, numbered from 0 up. The way is 1 from the lower to the higher number, -1 back.
     """
+    if not len(corners):
+        return np.zeros(0, dtype=np.int64), np.zeros(0, dtype=np.int64)
     start, end = corners.reshape(-1), np.roll(corners, -1, axis=1).reshape(-1)
     low, high = np.minimum(start, end), np.maximum(start, end)
     _, edge = np.unique(low * (int(corners.max()) + 1) + high, return_inverse=True)
-    balance = np.bincount(edge.reshape(-1), weights=np.where(start < end, 1, -1))
-    sides = np.flatnonzero(balance[edge.reshape(-1)] != 0)
-    if not len(sides):
-        return sides, np.zeros(0, dtype=np.int32)
-    return sides, connected_faces(np.stack([start, end, start], axis=1)[sides])
+    return edge.reshape(-1), np.where(start < end, 1, -1)
 
 
 def connected_faces(corners: Int64Array) -> Int32Array:

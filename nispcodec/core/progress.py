@@ -18,6 +18,7 @@ class Progress:
                   uv mean distance in the network's [0, 1]^2 given the true chart
     seconds_left  estimate for this network
     note          something worth a line of its own, such as a retry
+    warning       something about the asset or its fit that its owner should know
     overall       share of the whole work that is done, 0 to 1, never less than told before;
                   NaN when it is not known
     """
@@ -30,6 +31,7 @@ class Progress:
     error: float = float("nan")
     seconds_left: float = float("nan")
     note: str = ""
+    warning: str = ""
     overall: float = float("nan")
 
 

@@ -14,7 +14,6 @@ from nispcodec.dataset.config import SamplingConfig
 from nispcodec.dataset.texture_gradient import texture_gradient
 from nispcodec.geometry.analysis import Analysis
 from nispcodec.geometry.openings import spread_over
-from nispcodec.geometry.solid import area
 from nispcodec.geometry.surface_points import (
     laplace_offsets,
     points_on,
@@ -23,6 +22,7 @@ from nispcodec.geometry.surface_points import (
     uniform_ball,
 )
 from nispcodec.geometry.symmetry import asymmetric_samples
+from nispcodec.geometry.triangles import area
 
 TINY = np.finfo(np.float64).tiny
 BLOCK = 1 << 16

@@ -18,7 +18,7 @@ from nispcodec.encode.targets import (
     pruned,
 )
 from nispcodec.geometry.analysis import Analysis
-from nispcodec.geometry.solid import area
+from nispcodec.geometry.triangles import area
 from nispcodec.train.backend.protocol import Engine
 from nispcodec.train.config import TrainConfig
 from nispcodec.train.task import Task

@@ -40,6 +40,8 @@ def encode(
     materials, textures = appearance(mesh, config, progress)
     progress(Progress(stage="charts and hidden walls"))
     analysis = analyze(mesh, config.seed, tuning.geometry_of(config.preset))
+    for warning in analysis.solid.warnings:
+        progress(Progress(stage="charts and hidden walls", warning=f"{mesh.name}: {warning}"))
     progress(Progress(stage="samples"))
     sampler = Sampler(analysis, config.seed, tuning.sampling)
     sets = (paper_training_sets if published else training_sets)(sampler)

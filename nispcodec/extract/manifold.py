@@ -17,11 +17,12 @@ Twins = tuple[Int64Array, Int64Array]
 
 
 def manifold(surface: Surface, retreat: float = SimplifyConfig.retreat) -> Surface:
-    """The closed, oriented surface, every edge with two faces and one fan of faces at every vertex.
+    """The oriented surface, every edge with two faces and one fan of faces at every vertex.
 
-    A vertex gets one copy for each sheet that passes through it. Two vertices that are joined by
-    two edges, as across a tunnel pinched shut, get a vertex in the middle of each. Copies draw back
-    to their own faces by `retreat`, a share of these faces' size.
+    It is closed, or ends at the edge of the grid as a field does that has no end there. A vertex
+    gets one copy for each sheet that passes through it. Two vertices that are joined by two edges,
+    as across a tunnel pinched shut, get a vertex in the middle of each. Copies draw back to their
+    own faces by `retreat`, a share of these faces' size.
     """
     twins = _twins(surface)
     apart = _apart(surface, twins, retreat)
@@ -29,7 +30,7 @@ def manifold(surface: Surface, retreat: float = SimplifyConfig.retreat) -> Surfa
 
 
 def _apart(surface: Surface, twins: Twins, retreat: float) -> Surface:
-    keys = surface.faces.ravel().astype(np.int64) << 32 | _sheets(twins)
+    keys = surface.faces.ravel().astype(np.int64) << 32 | _sheets(twins, surface.faces.size)
     names, copies = np.unique(keys, return_inverse=True)
     origins, faces = names >> 32, copies.reshape(-1, 3).astype(np.int32)
     positions = surface.positions[origins]
@@ -41,10 +42,9 @@ def _apart(surface: Surface, twins: Twins, retreat: float) -> Surface:
     return Surface(drawn.astype(np.float32), faces, surface.cell)
 
 
-def _sheets(twins: Twins) -> Int32Array:
-    """The sheet of each corner (3m,): corners of one vertex that are joined across edges."""
+def _sheets(twins: Twins, count: int) -> Int32Array:
+    """The sheet of each of `count` corners: corners of one vertex that are joined across edges."""
     one, other = twins
-    count = 2 * len(one)
     # Half-edge h starts at corner h and ends at the face's following corner.
     after = np.arange(count).reshape(-1, 3)[:, [1, 2, 0]].ravel()
     starts, ends = np.concatenate([one, after[one]]), np.concatenate([after[other], other])
@@ -89,15 +89,28 @@ def _twins(surface: Surface) -> Twins:
     """Every half-edge that runs from a lower to a higher vertex, and the half-edge it joins.
 
     Where several faces run up an edge, the first of them joins the first face downwards that is met
-    on turning through the solid behind it, and so on round the edge.
+    on turning through the solid behind it, and so on round the edge. Those that find none are left
+    out.
     """
     starts = surface.faces.ravel().astype(np.int64)
     ends = np.roll(surface.faces, -1, axis=1).ravel()
     down = starts > ends
     keys = np.minimum(starts, ends) << 32 | np.maximum(starts, ends)
     order = np.lexsort([_turns(surface, keys, down), keys, down])
-    up, joined = np.split(order, 2)
-    return up, joined
+    up, joined = np.split(order, [len(order) - np.count_nonzero(down)])
+    if np.array_equal(keys[up], keys[joined]):
+        return up, joined
+    edges = np.unique(keys, return_inverse=True)[1]
+    rising, falling = _with_partners(edges[up], edges[joined])
+    return up[rising], joined[falling]
+
+
+def _with_partners(one: Int64Array, other: Int64Array) -> Twins:
+    """The places in two sorted arrays of numbers: the k-th of a number in one, and in the other."""
+    ranks = [np.arange(len(each)) - np.searchsorted(each, each) for each in (one, other)]
+    most = max(int(each.max(initial=0)) for each in ranks) + 1
+    first, second = one * most + ranks[0], other * most + ranks[1]
+    return np.intersect1d(first, second, assume_unique=True, return_indices=True)[1:]
 
 
 def _turns(surface: Surface, keys: Int64Array, down: BoolArray) -> Float64Array:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from nispcodec.core.atomic_write import expect_path
 from nispcodec.core.document import Document
 from nispcodec.core.errors import FormatError, NispError
 from nispcodec.format.document import unpack
@@ -14,6 +15,7 @@ def read(path: str | Path) -> Document:
 
     Raises FormatError, naming the file, for a malformed one and NispError for an unreadable one.
     """
+    expect_path(path)
     try:
         return unpack(Path(path).read_bytes())
     except OSError as why:

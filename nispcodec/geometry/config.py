@@ -29,6 +29,19 @@ class SolidConfig:
     gap_margin        ... nor points so much further away than the nearest gap or rim: pieces that
                       are hidden in part leave gaps of up to half `fine_edge`
     rim_step          the rim of openings is looked at so often
+    weld              positions at rims that are nearer than this are one: rounding to single
+                      precision opens seams; at 1e-5 thin parts of a real asset were joined
+    clear_majority    an open patch, of which some was wound against the rest, is the right way
+                      round with such a majority of its area
+    bulge             an open patch that holds such a volume, for its area^1.5, has an outside: a
+                      sphere holds 0.09, half of one 0.02 to 0.03
+    crossing          a body that is inside out is turned where at least such a share of its area
+                      lies inside others, and outside
+    escape            an opening, or the inside of a sheet, from which such a share of rays meets
+                      nothing is not closed by other bodies
+    leak              the same of a sheet of whose rim such a share is away from all others:
+    hanging           panels that make a room meet
+    rays              that ask for it, of each opening and sheet
     open_share        a body whose exposed openings have this share of its area is open
     undecided         an opening is exposed where the winding number is so near to a half ...
     plugged_gap       ... and the mesh further away than this
@@ -51,6 +64,14 @@ class SolidConfig:
     whole: float = 0.1
     gap_margin: float = 0.01
     rim_step: float = 0.02
+    weld: float = 1e-6
+    clear_majority: float = 0.2
+    bulge: float = 0.02
+    crossing: float = 0.02
+    escape: float = 0.4
+    leak: float = 0.03
+    hanging: float = 0.95
+    rays: int = 128
     open_share: float = 0.25
     undecided: float = 0.2
     plugged_gap: float = 0.02

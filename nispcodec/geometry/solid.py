@@ -9,19 +9,18 @@ as do walls too thin for one (double-sided sheets: two faces back to back).
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import partial
 
-import igl
 import numpy as np
 
-from nispcodec.core.arrays import BoolArray, Float64Array, Int64Array, IntArray
+from nispcodec.core.arrays import BoolArray, Float64Array, Int64Array
 from nispcodec.core.errors import MeshError
+from nispcodec.geometry.bodies import find_bodies, sentences, turn
 from nispcodec.geometry.config import SolidConfig
+from nispcodec.geometry.enclosing import free_faces
 from nispcodec.geometry.reach import reach_of, rim_points, shared_corners
+from nispcodec.geometry.triangles import area, normals
 from nispcodec.geometry.welding import Welding
-from nispcodec.geometry.z_order import in_space_order
-
-TINY = np.finfo(np.float64).tiny
+from nispcodec.geometry.winding import Winding
 
 
 @dataclass(frozen=True)
@@ -40,6 +39,7 @@ class Solid:
                    them if they are nearer than this; 0 where that is not known
     half_thickness given to open surfaces, normalized frame
     hidden_share, open_surface_share: shares of the mesh's area
+    warnings       what was done about faces to tell their inside, in sentences
     """
 
     pieces: Float64Array
@@ -53,6 +53,7 @@ class Solid:
     half_thickness: float
     hidden_share: float
     open_surface_share: float
+    warnings: tuple[str, ...]
 
 
 def build_solid(
@@ -63,12 +64,25 @@ def build_solid(
     corners (m, 3, 3): every face's corners, normalized frame; `welding` is that of the mesh.
     Raises MeshError when no face can be seen from outside.
     """
-    free = _free_bodies(corners, welding, config)
-    bodies = corners[~free]
-    winding = Winding(bodies, config.winding_accuracy, config.rough_accuracy, config.rough_margin)
-    pieces, parents, kind, front, whole = _classify(winding, bodies, np.flatnonzero(~free), config)
+    given, found = corners, find_bodies(corners, welding.positions, config)
+    corners = turn(corners, found.turned)
+    free = free_faces(corners, found, config)
+    # Faces back to back that have no inside are two sides of a sheet, and stay so.
+    two_sided = free & found.two_sided
+    if (two_sided & found.turned).any():
+        corners = turn(given, found.turned & ~two_sided)
+    told = sentences(found, area(corners), free)
+    free &= ~two_sided
+    once = two_sided | ~found.spare
+    winding = Winding(
+        corners[~free & once], config.winding_accuracy, config.rough_accuracy, config.rough_margin
+    )
+    behind = ~free & ~once & found.two_sided
+    shown = np.flatnonzero(~free & ~behind)
+    pieces, parents, kind, front, whole = _classify(winding, corners[shown], shown, config)
     hidden = kind == _HIDDEN
-    total, hidden_area = area(corners).sum(), area(pieces[hidden]).sum()
+    total = area(corners).sum()
+    hidden_area = area(pieces[hidden]).sum() + area(corners[behind]).sum()
     all_pieces = np.concatenate([pieces[~hidden], corners[free]])
     if not len(all_pieces):
         raise MeshError(f"expected faces to be seen from outside, found {len(corners)} hidden ones")
@@ -76,7 +90,8 @@ def build_solid(
     open_surface = kinds != _OUTER
     open_area, front_of = area(all_pieces[open_surface]).sum(), normals(all_pieces)
     gaps = shared_corners(pieces, hidden)
-    rim = rim_points(corners, welding.rim[~free[welding.rim // 3]], config.rim_step)
+    closed_rim = found.rim[~free[found.rim // 3] & ~two_sided[found.rim // 3]]
+    rim = rim_points(corners, closed_rim, config.rim_step)
     whole &= kind == _OUTER
     reach = np.zeros(len(pieces))
     reach[whole] = reach_of(pieces[whole], gaps, rim, config.gap_margin)
@@ -92,60 +107,8 @@ def build_solid(
         half_thickness=config.half_thickness,
         hidden_share=float(hidden_area / total),
         open_surface_share=float(open_area / total),
+        warnings=told,
     )
-
-
-def area(triangles: Float64Array) -> Float64Array:
-    """The areas (n,) of triangles (n, 3, 3)."""
-    doubled: Float64Array = np.linalg.norm(_cross(triangles), axis=1)
-    return doubled / 2
-
-
-def normals(triangles: Float64Array) -> Float64Array:
-    """The unit normals (n, 3) of triangles (n, 3, 3); 0 for degenerate ones."""
-    cross = _cross(triangles)
-    length = np.linalg.norm(cross, axis=1, keepdims=True)
-    return np.divide(cross, length, out=np.zeros_like(cross), where=length > 0)
-
-
-class Winding:
-    """Generalized winding number of a triangle soup (m, 3, 3), by libigl.
-
-    Fast winding numbers (Barill et al. 2018): `accuracy` is how many radii away a cluster of
-    triangles is taken as one, `rough` and `margin` how many are enough where that is clear.
-    """
-
-    def __init__(
-        self, bodies: Float64Array, accuracy: float, rough: float = 0.0, margin: float = 0.0
-    ) -> None:
-        self._accuracy, self._rough, self._margin = accuracy, rough or accuracy, margin
-        self._tree = igl.FastWindingNumberBVH()
-        self._empty = not len(bodies)
-        if not self._empty:
-            faces = np.arange(3 * len(bodies), dtype=np.int64).reshape(-1, 3)
-            self._tree.init(np.ascontiguousarray(bodies.reshape(-1, 3)), faces)
-
-    def at(self, points: Float64Array) -> Float64Array:
-        """The winding number (n,) at points (n, 3); 0 everywhere for a soup of no triangles."""
-        if self._empty or not len(points):
-            return np.zeros(len(points))
-        return in_space_order(partial(self._asked, self._accuracy), points)
-
-    def about(self, points: Float64Array) -> Float64Array:
-        """The same, only roughly except near a half, one and a half and so on: which side it is."""
-        if self._empty or not len(points):
-            return np.zeros(len(points))
-        return in_space_order(self._about, points)
-
-    def _about(self, points: Float64Array) -> Float64Array:
-        number = self._asked(self._rough, points)
-        unclear = np.flatnonzero(np.abs(number - np.floor(number) - 0.5) < self._margin)
-        number[unclear] = self._asked(self._accuracy, points[unclear])
-        return number
-
-    def _asked(self, accuracy: float, points: Float64Array) -> Float64Array:
-        number: Float64Array = self._tree.winding_number(points, accuracy)
-        return number
 
 
 _OUTER, _HIDDEN, _OPEN, _THIN, _MIXED = range(5)
@@ -225,76 +188,6 @@ def _point_kind(
     return np.select([doubtful, inside], [_OPEN, _HIDDEN], _OUTER), front
 
 
-def _free_bodies(corners: Float64Array, welding: Welding, config: SolidConfig) -> BoolArray:
-    """Faces (m,) of bodies that enclose nothing, whatever the winding number says."""
-    body = welding.bodies
-    size = np.maximum(np.bincount(body, weights=area(corners)), TINY)
-    opening, center, owner = _openings(corners, welding)
-    exposed = _exposed(corners, center, config)
-    open_area = np.bincount(owner[exposed], weights=opening[exposed], minlength=len(size))
-    is_open = open_area / size > config.open_share
-    all_open = np.bincount(owner, weights=opening, minlength=len(size))
-    is_sheet = all_open / size > config.card_share
-    mask: BoolArray = _with_sheets(corners, body, is_sheet, is_open, config)[body]
-    return mask
-
-
-def _exposed(corners: Float64Array, center: Float64Array, config: SolidConfig) -> BoolArray:
-    """Which openings, by their centers (n, 3), are large and not plugged by another body.
-
-    Closing one, as the winding number does where it passes 1/2, would draw a closing surface that
-    nobody modeled. Openings beside the mesh (flat cards, panels) need no such care.
-    """
-    number = Winding(corners, config.winding_accuracy).at(center)
-    undecided = np.abs(np.abs(number) - 0.5) < config.undecided
-    exposed: BoolArray = undecided & (_gap(corners, center) > config.plugged_gap)
-    return exposed
-
-
-def _with_sheets(
-    corners: Float64Array, body: IntArray, sheet: BoolArray, free: BoolArray, config: SolidConfig
-) -> BoolArray:
-    """The `free` bodies (b,) and the sheets among the others that close nothing.
-
-    The winding number beside a sheet is a half and whatever its neighbors add: where there are many
-    (leaves), any number. Beside one that closes a body it is a whole one. Those let go show others.
-    """
-    while (sheet & ~free).any():
-        faces = np.flatnonzero((sheet & ~free)[body])
-        sizes, shown = area(corners[faces]), corners[faces]
-        in_front = shown.mean(axis=1) + config.probe_offset * normals(shown)
-        front = Winding(corners[~free[body]], config.winding_accuracy).at(in_front)
-        total = np.bincount(body[faces], sizes, len(free))
-        mean = np.bincount(body[faces], front * sizes, len(free)) / np.maximum(total, TINY)
-        loose = np.abs(mean + 0.5) < 0.5 - config.closing
-        if not loose.any():
-            break
-        free = free | loose
-    return free
-
-
-def _gap(corners: Float64Array, points: Float64Array) -> Float64Array:
-    if not len(points):
-        return np.zeros(0)
-    faces = np.arange(3 * len(corners), dtype=np.int64).reshape(-1, 3)
-    vertices = np.ascontiguousarray(corners.reshape(-1, 3))
-    squared: Float64Array = igl.point_mesh_squared_distance(points, vertices, faces)[0]
-    return np.sqrt(squared)
-
-
-def _openings(
-    corners: Float64Array, welding: Welding
-) -> tuple[Float64Array, Float64Array, IntArray]:
-    """Fan triangles that close every loop of the rim: their areas, centers and bodies."""
-    first = corners.reshape(-1, 3)[welding.rim]
-    second = np.roll(corners, -1, axis=1).reshape(-1, 3)[welding.rim]
-    owner, loop = np.repeat(welding.bodies, 3)[welding.rim], welding.loops
-    size = np.maximum(np.bincount(loop), 1)[:, None] if len(loop) else np.ones((1, 1))
-    middle = np.stack([np.bincount(loop, weights=first[:, a]) for a in range(3)], axis=1) / size
-    fan = np.stack([first, second, middle[loop]], axis=1)
-    return area(fan), fan.mean(axis=1), owner
-
-
 def _subdivide(triangles: Float64Array) -> Float64Array:
     """Each triangle into four through its edge midpoints, children of one parent together."""
     a, b, c = triangles[:, 0], triangles[:, 1], triangles[:, 2]
@@ -308,7 +201,3 @@ def _longest_edge(triangles: Float64Array) -> Float64Array:
     edges = triangles - np.roll(triangles, 1, axis=1)
     longest: Float64Array = np.linalg.norm(edges, axis=2).max(axis=1, initial=0.0)
     return longest
-
-
-def _cross(triangles: Float64Array) -> Float64Array:
-    return np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0])

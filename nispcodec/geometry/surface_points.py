@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from nispcodec.core.arrays import Float64Array, Int64Array
-from nispcodec.geometry.solid import Solid, area
+from nispcodec.geometry.solid import Solid
+from nispcodec.geometry.triangles import area
 
 TINY = np.finfo(np.float64).tiny
 

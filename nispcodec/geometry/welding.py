@@ -12,7 +12,7 @@ import numpy as np
 
 from nispcodec.core.arrays import Int32Array, Int64Array
 from nispcodec.core.asset import TexturedMesh
-from nispcodec.core.connectivity import cell_ids, connected_faces, rim, row_ids
+from nispcodec.core.connectivity import cell_ids, connected_faces, row_ids
 
 
 @dataclass(frozen=True)
@@ -21,20 +21,13 @@ class Welding:
 
     positions  (m, 3) int64: the same number for the same position
     corners    (m, 3) int64: the same number for the same position and UV on one patch
-    bodies     (m,) int32: faces that positions connect share a number
     patches    (m,) int32: faces that corners of one material connect share a number, those of one
                material without UV too; numbers rise with the first face of each
-    rim        (b,) int64, into the 3 m sides of faces, each from a corner to the next: those that
-               no side of another face cancels
-    loops      (b,) int32: sides of the rim that positions connect share a number
     """
 
     positions: Int64Array
     corners: Int64Array
-    bodies: Int32Array
     patches: Int32Array
-    rim: Int64Array
-    loops: Int32Array
 
 
 def welded(mesh: TexturedMesh) -> Welding:
@@ -47,4 +40,4 @@ def welded(mesh: TexturedMesh) -> Welding:
     connecting = np.where(has_uv, positions, -1)
     patches = connected_faces(cell_ids(mesh.face_materials[:, None], connecting, uvs))
     corners = cell_ids(patches[:, None], positions, uvs)
-    return Welding(positions, corners, connected_faces(positions), patches, *rim(positions))
+    return Welding(positions, corners, patches)

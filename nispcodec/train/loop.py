@@ -82,9 +82,11 @@ class _Run:
                     self._mine_hard_examples(floaters=start > minings[0])
                 self._advance(start, stop, threads)
                 note = self._check(stop) if self._is_check(start, stop) else ""
+            given_up = self.retries > self.config.loop.retries
             left = (time.monotonic() - started) / stop * (self.task.schedule.steps - stop)
-            self._tell("fit", stop, self.error, left, note)
-            if self.retries > self.config.loop.retries:
+            warning = self._given_up() if given_up else ""
+            self._tell("fit", stop, self.error, left, note, warning)
+            if given_up:
                 break
         self._expect_useful()
         with self.core():
@@ -124,15 +126,18 @@ class _Run:
     def _retry(self, done: int) -> str:
         self.retries += 1
         if self.retries > self.config.loop.retries:
-            return (
-                f"warning: held-out error {self.error:g} after {self.config.loop.retries} retries "
-                f"at lower rates: the best network so far is kept, held-out error "
-                f"{self.best_error:g}"
-            )
+            return ""
         self.trainer.restart(self.best)
         self.rates = (self.rates / 2).astype(np.float32)
         rate = self.task.schedule.rate / 2**self.retries
         return f"diverged at step {done}: going on from the best weights at rate {rate:g}"
+
+    def _given_up(self) -> str:
+        return (
+            f"{self.task.name} network: held-out error {self.error:g} after "
+            f"{self.config.loop.retries} retries at lower rates: the best network so far is kept, "
+            f"held-out error {self.best_error:g}"
+        )
 
     def _expect_useful(self) -> None:
         objective, held_out = self.task.objective, self.task.held_out
@@ -191,9 +196,12 @@ class _Run:
         held_out = self.task.held_out
         return self.trainer.outputs(weights, held_out.points, held_out.chart)
 
-    def _tell(self, stage: str, step: int, error: float, left: float, note: str) -> None:
-        steps = self.task.schedule.steps
-        self.listen(Progress(self.task.name, stage, step, steps, self.loss, error, left, note))
+    def _tell(
+        self, stage: str, step: int, error: float, left: float, note: str, warning: str = ""
+    ) -> None:
+        name, steps = self.task.name, self.task.schedule.steps
+        told = Progress(name, stage, step, steps, self.loss, error, left, note)
+        self.listen(replace(told, warning=warning))
 
 
 def _minings(schedule: Schedule) -> range:

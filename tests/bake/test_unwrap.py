@@ -11,6 +11,8 @@ from nispcodec.core.asset import TexturedMesh
 from nispcodec.core.errors import NispError
 from nispcodec.geometry.charts import split_charts
 from nispcodec.geometry.welding import welded
+from tests.geometry.shapes import cube as cube_triangles
+from tests.geometry.shapes import soup
 from tests.io.files import image, load_obj
 
 CUBE = (
@@ -52,3 +54,11 @@ def test_without_xatlas_the_error_says_what_to_install(
     monkeypatch.setitem(sys.modules, "xatlas", None)
     with pytest.raises(NispError, match=r"pip install 'nispcodec\[unwrap\]'"):
         unwrap(cube)
+
+
+def test_small_parts_beside_large_ones_get_an_area() -> None:
+    pytest.importorskip("xatlas")
+    corners = np.concatenate([cube_triangles((0, 0, 0), 1.0), cube_triangles((3, 0, 0), 5e-4)])
+    uvs = unwrap(soup(corners)).corner_uvs
+    a, b = uvs[:, 1] - uvs[:, 0], uvs[:, 2] - uvs[:, 0]
+    assert (np.abs(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]) > 0).all()

@@ -7,6 +7,8 @@ from types import SimpleNamespace
 import pytest
 
 from nispcodec.core.errors import FitError
+from nispcodec.core.progress import Listener, Progress
+from nispcodec.model import NispModel
 from tests import tiny
 from tests.cli.conftest import Encoder, nisp
 
@@ -22,6 +24,20 @@ def test_encode_writes_and_reports(encoder: Encoder, mesh: Path, tmp_path: Path)
     assert report["input_bytes"]["textures"] > 0
     assert (seen["config"].seed, seen["config"].textures) == (7, False)
     assert "diverged at step 11" in result.stderr
+
+
+def test_what_the_encode_warns_of_is_said_and_reported(
+    monkeypatch: pytest.MonkeyPatch, mesh: Path, tmp_path: Path
+) -> None:
+    def encode(asset: object, config: object, progress: Listener) -> NispModel:
+        progress(Progress(stage="samples", warning="mug: turned faces"))
+        return NispModel(tiny.document())
+
+    monkeypatch.setattr("nispcodec.encode", encode)
+    result = nisp("encode", mesh, "-o", tmp_path / "out.nisp", "--json", "--quiet")
+    assert result.exit_code == 0, result.output
+    assert "nisp: warning: mug: turned faces" in result.stderr
+    assert json.loads(result.stdout)["warnings"][-1] == "mug: turned faces"
 
 
 @pytest.mark.parametrize(

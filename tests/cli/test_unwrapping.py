@@ -43,3 +43,5 @@ def test_faces_without_an_area_in_the_atlas_are_counted() -> None:
     assert warning.startswith("unwrapping: 1 of 1 faces got no area in the atlas")
     laid = replace(MESH, uvs=np.eye(3)[:, :2].copy(), uv_faces=MESH.faces)
     assert with_collapsed_named(laid).warnings == ()
+    line = replace(MESH, positions=np.array([[0.0, 0, 0], [1, 0, 0], [2, 0, 0]]))
+    assert with_collapsed_named(line).warnings == ()

@@ -53,3 +53,10 @@ def test_it_replaces_and_leaves_nothing_beside(tmp_path: Path) -> None:
 def test_a_folder_that_is_not_there(tmp_path: Path) -> None:
     with pytest.raises(NispError, match="cannot be written"):
         write_atomic(tmp_path / "none" / "model.nisp", b"")
+
+
+def test_a_path_with_nul_is_an_error_in_words(tmp_path: Path) -> None:
+    for path in (tmp_path / "a\0b.nisp", tmp_path / "a\0b" / "c.nisp"):
+        with pytest.raises(NispError, match="expected a path without NUL"):
+            write_atomic(path, b"")
+    assert not list(tmp_path.iterdir())

@@ -6,7 +6,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.sparse import coo_array, csgraph
 
-from nispcodec.core.connectivity import connected_components, connected_faces, row_ids
+from nispcodec.core.connectivity import (
+    connected_components,
+    connected_faces,
+    edge_ids,
+    row_ids,
+)
 
 
 @st.composite
@@ -58,3 +63,12 @@ def test_faces_are_numbered_by_the_first_of_each_patch() -> None:
 
 def test_equal_rows_get_equal_numbers() -> None:
     np.testing.assert_array_equal(row_ids(np.array([[2, 1], [0, 5], [2, 1]])), [1, 0, 1])
+
+
+def test_sides_between_the_same_corners_are_one_edge_and_say_which_way_they_run() -> None:
+    edge, way = edge_ids(np.array([[0, 1, 2], [2, 1, 3]]))
+    assert way.tolist() == [1, 1, -1, -1, 1, -1]
+    assert edge[1] == edge[3]
+    assert np.bincount(edge).tolist().count(2) == 1
+    assert len(np.unique(edge)) == 5
+    assert all(len(each) == 0 for each in edge_ids(np.zeros((0, 3), np.int64)))

@@ -136,3 +136,13 @@ def test_a_device_that_is_not_there_is_an_error_before_any_work() -> None:
     with pytest.raises(FitError, match="device: expected one that torch finds here"):
         encode(box_asset(), EncodeConfig(device="cuda:99"), told.append)
     assert not told
+
+
+def test_faces_the_wrong_way_round_are_told_of() -> None:
+    corners = cube((0, 0, 0), 1.0)
+    corners[:2] = corners[:2, ::-1]
+    told: list[str] = []
+    encode(bare(soup(corners)), progress=lambda update: told.append(update.warning))
+    (warning,) = filter(None, told)
+    assert "turned faces" in warning
+    assert "16.67% of the area" in warning

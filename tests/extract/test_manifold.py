@@ -67,3 +67,20 @@ def test_a_tunnel_pinched_shut_gets_two_edges() -> None:
     assert len(done.faces) == len(kept) + 4
     before, after = (areas(each.positions, each.faces).sum() for each in (pinched, done))
     np.testing.assert_allclose(after, before, rtol=2 * SimplifyConfig.retreat)
+
+
+def test_a_surface_with_an_edge_keeps_it() -> None:
+    """As where a field has no end: the surface stops at the grid's."""
+    for missing in (1, 2, 3):
+        given = surface(CORNERS, TETRAHEDRON[missing:])
+        done = manifold(given)
+        assert np.array_equal(done.positions[done.faces], given.positions[given.faces])
+
+
+def test_bodies_at_one_edge_come_apart_though_one_is_open() -> None:
+    turned = CORNERS * [1, -1, -1]
+    positions = np.vstack([CORNERS, turned[2:]])
+    other = np.array([0, 1, 4, 5])[TETRAHEDRON]
+    done = manifold(surface(positions, np.vstack([TETRAHEDRON, other[1:]])))
+    assert components(done)[0] == 2
+    assert len(done.faces) == 7

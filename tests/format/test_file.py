@@ -33,3 +33,8 @@ def test_a_file_that_cannot_be_read_is_no_malformed_one(tmp_path: Path, name: st
         read(path)
     assert not isinstance(caught.value, FormatError)
     assert str(caught.value).startswith(f"{path}: ")
+
+
+def test_a_path_with_nul_is_an_error_in_words() -> None:
+    with pytest.raises(NispError, match="expected a path without NUL"):
+        read("a\0b.nisp")

@@ -35,6 +35,21 @@ def hemisphere(rings: int = 12) -> Float64Array:
     return quads[size > 1e-9]
 
 
+def sphere(rings: int = 12) -> Float64Array:
+    """The unit sphere, normals outwards, as many rings in each half."""
+    half = hemisphere(rings)
+    return np.concatenate([half, (half * [1, 1, -1])[:, ::-1]])
+
+
+def grid(count: int = 6) -> Float64Array:
+    """The square [-1, 1]^2 at height 0, normals up, of count x count cells."""
+    steps = np.linspace(-1, 1, count + 1)
+    x, y = np.meshgrid(steps, steps, indexing="ij")
+    spots = np.stack([x, y, np.zeros_like(x)], axis=2)
+    a, b, c, d = spots[:-1, :-1], spots[1:, :-1], spots[1:, 1:], spots[:-1, 1:]
+    return np.stack([np.stack([a, b, c], 2), np.stack([a, c, d], 2)], 2).reshape(-1, 3, 3)
+
+
 def soup(triangles: Float64Array, uvs: Float64Array | None = None) -> TexturedMesh:
     """Triangles (m, 3, 3) with UVs (m, 3, 2), nothing shared by index; u, v = x, y by default."""
     indices = np.arange(3 * len(triangles), dtype=np.int32).reshape(-1, 3)

@@ -9,7 +9,8 @@ from numpy.typing import ArrayLike
 from nispcodec.core.arrays import Float64Array
 from nispcodec.geometry.config import SolidConfig
 from nispcodec.geometry.distance import DistanceField
-from nispcodec.geometry.solid import Solid, area, build_solid
+from nispcodec.geometry.solid import Solid, build_solid
+from nispcodec.geometry.triangles import area
 from nispcodec.geometry.welding import welded
 from tests.geometry.shapes import cube, hemisphere, soup
 

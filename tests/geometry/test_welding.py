@@ -8,7 +8,7 @@ import numpy as np
 
 from nispcodec.core.asset import Material
 from nispcodec.geometry.welding import welded
-from tests.geometry.shapes import box_asset, cube, soup
+from tests.geometry.shapes import box_asset
 
 
 def test_corners_are_welded_by_position_and_by_uv() -> None:
@@ -33,13 +33,3 @@ def test_patches_end_at_materials_and_seams() -> None:
         mesh, face_materials=np.arange(12, dtype=np.int32) % 2, materials=(Material(),) * 2
     )
     assert welded(halves).patches.max() + 1 == 12
-
-
-def test_a_rim_is_where_no_other_side_is() -> None:
-    closed = cube((0, 0, 0), 1.0)
-    assert not len(welded(soup(closed)).rim)
-    lids = np.isin(closed[:, :, 2].sum(axis=1), (0, 3))
-    tube = welded(soup(closed[~lids]))
-    assert len(tube.rim) == 8
-    assert np.bincount(tube.loops).tolist() == [4, 4]
-    assert set(tube.bodies) == {0}

@@ -30,8 +30,7 @@ def choose_engine(wanted: str, device: str, published: bool, listen: Listener) -
             engine = _torch(device)
         except NispError as missing:
             raise NispError(f"{missing}; the native engine: {error}") from error
-        note = f"warning: trains with torch, which takes several times as long: {error}"
-        listen(Progress(note=note))
+        listen(Progress(warning=f"trained with torch, which takes several times as long: {error}"))
         return engine
 
 

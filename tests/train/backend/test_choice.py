@@ -55,8 +55,8 @@ def test_without_the_native_engine_torch_is_taken_with_a_warning(
     monkeypatch.setattr(choice, "NativeEngine", broken)
     assert choose_engine("auto", "auto", False, heard.append).name == "torch"
     (update,) = heard
-    assert update.note.startswith("warning: trains with torch")
-    assert update.note.endswith("no native backend: it was not built")
+    assert update.warning.startswith("trained with torch")
+    assert update.warning.endswith("no native backend: it was not built")
 
 
 def test_a_native_engine_that_was_asked_for_is_an_error_where_it_is_not(
