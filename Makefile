@@ -11,6 +11,7 @@ ASSETS ?= ../shared/assets
 RUNS ?= 2000000
 TORCH ?= torch==2.13.0
 BIN := .venv/bin
+KERNEL := $(wildcard nispcodec/train/backend/native/kernel/*)
 
 .PHONY: setup demo test lint docs package fuzz sanitize bench
 
@@ -19,15 +20,15 @@ setup: .venv/ready
 # torch first and by itself, as on Linux what pip finds may bring gigabytes of CUDA: the build for
 # processors alone is on an index of PyTorch's own, TORCH='torch==2.13.0 --index-url ...'.
 # Simplification is for the benchmarks alone, and goes without where there is no C++ compiler.
-.venv/ready: pyproject.toml setup.py constraints.txt
+.venv/ready: pyproject.toml setup.py constraints.txt $(KERNEL)
 	$(PYTHON) -m venv .venv
 	$(BIN)/pip install --disable-pip-version-check -q -c constraints.txt $(TORCH)
 	$(BIN)/pip install --disable-pip-version-check -q -c constraints.txt -e '.[all,dev,bench]'
 	-$(BIN)/pip install --disable-pip-version-check -q -c constraints.txt -e '.[simplify]'
 	touch $@
 
-# Without torch, where the native trainer could be built.
-.venv/demo: pyproject.toml setup.py constraints.txt
+# Without torch, where the native backend could be built.
+.venv/demo: pyproject.toml setup.py constraints.txt $(KERNEL)
 	$(PYTHON) -m venv .venv
 	$(BIN)/pip install --disable-pip-version-check -q -c constraints.txt -e '.[encode,render]'
 	$(BIN)/python -m nispcodec.train.backend.native || $(BIN)/pip install --disable-pip-version-check -q -c constraints.txt $(TORCH)

@@ -37,7 +37,7 @@ class Named(LibraryChoice):
 
 
 def presets() -> Iterable[str]:
-    """How long an encode may take."""
+    """How long to learn."""
     from nispcodec.encode.config import PRESETS
 
     return PRESETS

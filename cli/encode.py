@@ -108,9 +108,11 @@ def command(
     warn(asset.warnings)
     _expect_possible(asset, config, output)
     found: list[str] = []
-    with shown("encode", progress, quiet) as listen:
-        model = nispcodec.encode(asset, config, progress=_with_warnings(listen, found))
-    warn(found)
+    try:
+        with shown("encode", progress, quiet) as listen:
+            model = nispcodec.encode(asset, config, progress=_with_warnings(listen, found))
+    finally:
+        warn(found)
     asset = replace(asset, warnings=(*asset.warnings, *found))
     nispcodec.save(model, output)
     report = _report(model, asset, mesh, output, time.monotonic() - started)
@@ -121,12 +123,15 @@ def command(
 
 
 def _with_warnings(listen: Listener, found: list[str]) -> Listener:
-    """The listener, with what is warned of added to `found`: bars would be drawn over it."""
+    """The listener, with what is warned of as a note, and added to `found` to be said again.
+
+    A note may go by, or not be shown at all, but a warning is read by who looks at the end.
+    """
 
     def heard(update: Progress) -> None:
         if update.warning:
             found.append(update.warning)
-        listen(update)
+        listen(replace(update, note=update.note or update.warning))
 
     return heard
 

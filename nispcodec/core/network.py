@@ -1,7 +1,7 @@
 """Networks as data: their topology and their weights, as plain numpy arrays.
 
 The one description that training, the format and the decoder share; evaluation is in
-`nispcodec.infer.evaluate` (numpy) and `nispcodec.train.backend.torch.module` (torch).
+`nispcodec.infer.evaluate` (numpy) and `nispcodec.train.backend.torch.forward` (torch).
 """
 
 from __future__ import annotations

@@ -26,9 +26,10 @@ class EncodeConfig:
     """How to encode.
 
     preset          one of `PRESETS`
-    seed            of everything random: the same input, seed and threads give the same bytes
+    seed            of everything random: the same input, seed and engine give the
+                    same bytes on one kind of processor, with any number of threads
     engine          what trains: "native", "torch"; "auto": native wherever that can
-    device          "auto", "cpu", "cuda"; CUDA trains with torch
+    device          "auto", "cpu", "cuda", "cuda:1"; CUDA trains with torch
     threads         cores to use; 0: all
     pad_textures    fills what no face uses of an image with the colors beside it
     texture_format  None keeps the image files as they are; "webp", "avif", "jpeg" re-encode them

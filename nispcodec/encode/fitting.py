@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable, Mapping
 
 from nispcodec.core.document import Document
@@ -19,6 +18,7 @@ from nispcodec.encode.targets import (
 )
 from nispcodec.geometry.analysis import Analysis
 from nispcodec.geometry.triangles import area
+from nispcodec.infer.parallel import cores
 from nispcodec.train.backend.protocol import Engine
 from nispcodec.train.config import TrainConfig
 from nispcodec.train.task import Task
@@ -39,7 +39,7 @@ def fit(
 
     Raises FitError when a network does not converge.
     """
-    threads = config.threads or os.cpu_count() or 1
+    threads = config.threads or cores()
 
     def run(tasks: list[Task], listen: Listener) -> dict[str, Network]:
         return fit_networks(tasks, config.seed, engine, threads, listen)

@@ -31,7 +31,8 @@ def encode(
     """Fit networks to an asset. Ctrl-C and errors leave nothing behind.
 
     Raises MeshError when nothing of the mesh can be held by a signed distance, FitError when a
-    network does not converge.
+    network does not converge, and, before the work, for a device or an engine that is not there,
+    NispError for a target that cannot be met and for a package that is missing.
     """
     config, tuning = config or EncodeConfig(), tuning or Tuning()
     progress = with_overall(progress, config, tuning.training)

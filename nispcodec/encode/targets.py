@@ -50,7 +50,9 @@ class FitContext:
         steps: dict[str, int] = {}
 
         def heard(progress: Progress) -> None:
-            errors[progress.network] = progress.error
+            # The least: what came of a late divergence is no measure, and NaN is none at all.
+            known = errors.get(progress.network, math.inf)
+            errors[progress.network] = min(known, progress.error)
             steps[progress.network] = progress.step
             stage, done = "probe how much there is to learn", min(steps.values())
             self.listen(Progress(stage=stage, step=done, steps=progress.steps))
@@ -125,6 +127,7 @@ def fit_to_error(context: FitContext, wanted: float) -> Networks:
     networks: Networks = {}
     tried: dict[int, float] = {}
     for _ in range(config.rounds):
+        networks.pop("sdf", None)
         tasks = [task for task in context.tasks(hidden, errors, {}) if task.name not in networks]
         networks |= context.fit(tasks, context.listen)
         used = hidden["sdf"][0]
@@ -134,7 +137,6 @@ def fit_to_error(context: FitContext, wanted: float) -> Networks:
         width = _next_width(tried, wanted, config)
         if abs(error / wanted - 1) <= config.close or width in tried:
             break
-        del networks["sdf"]
         hidden["sdf"] = layers(width, len(hidden["sdf"]), context.problem.config.sizing)
     if error > (1 + config.close) * wanted:
         raise FitError(

@@ -39,8 +39,8 @@ class SolidConfig:
                       lies inside others, and outside
     escape            an opening, or the inside of a sheet, from which such a share of rays meets
                       nothing is not closed by other bodies
-    leak              the same of a sheet of whose rim such a share is away from all others:
-    hanging           panels that make a room meet
+    leak              the same of a sheet whose rim hangs free ...
+    hanging           ... as such a share of it is away from all others: panels of a room meet
     rays              that ask for it, of each opening and sheet
     open_share        a body whose exposed openings have this share of its area is open
     undecided         an opening is exposed where the winding number is so near to a half ...

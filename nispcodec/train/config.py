@@ -98,6 +98,7 @@ class LoopConfig:
                     diverged ...
     settled         ... once this share of the steps is done
     retries         at half the rate, from the best weights
+    most_threads    of one fit: a batch has four lanes, more only wait
     useless         times a constant's error from which on a network is not worth writing
     """
 
@@ -111,6 +112,7 @@ class LoopConfig:
     diverged: float = 4.0
     settled: float = 0.25
     retries: int = 4
+    most_threads: int = 16
     useless: float = 4.0
 
 
@@ -237,7 +239,7 @@ class NetworkConfig:
     w0_scale             first frequencies, relative to SIREN's: on most of the surface UVs are all
                          but straight in x, y, z
     last_layer_lr_scale  relative rate of the last layer: the SDF's bias moves the whole field
-    step_share           of the steps of a budget: charts and UVs share a core
+    step_share           of the steps of a budget: charts gain little from more
     lambda_              how much a bit a weight less may raise the loss, of SDF and UVs relative to
                          what the fit is left with
     probe_hidden         widths of the probe's hidden layers
@@ -344,7 +346,7 @@ class TrainConfig:
     batch: int = 1024
     batch_of_outputs: int = 20_000
     fine_rate: float = 5e-4
-    fine_steps: float = 0.4
+    fine_steps: float = 0.55
     embedding: int = 4
     affine_ridge: float = 1e-4
     probe_steps: int = 1500

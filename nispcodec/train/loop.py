@@ -41,7 +41,8 @@ def train(
     A run whose held-out error explodes goes on from its best weights at half the rate; where lower
     rates do not help, the best network so far is what there is, and a note says so. At the end the
     weights are rounded (`nispcodec.train.quantize`), if the task says how.
-    Raises FitError for a network that is far worse than a constant.
+    Raises FitError for a network that is far worse than a constant, whose weights cannot be
+    rounded, or that the engine does not train.
     """
     return _Run(task, seed, engine, core, listen, mask).fit()
 
@@ -69,7 +70,7 @@ class _Run:
         self.kept = self.layout.kept(mask)
         self.trainer = engine.trainer(task, self._start(), self.kept)
         self.best = self.trainer.weights
-        self.error_radii = engine.error_radii(task)
+        self.error_radii = engine.error_radii(task) if task.schedule.minings else None
         self.batches = Batches(len(task.samples), task.schedule.batch, self.random)
         self.hardness: FloatArray = np.zeros(len(task.samples), dtype=np.float32)
         self.rates = _rates(task.schedule, self.config.loop)
@@ -99,7 +100,7 @@ class _Run:
         return weights
 
     def _advance(self, start: int, stop: int, threads: int) -> None:
-        self.trainer.threads = threads
+        self.trainer.threads = min(threads, self.config.loop.most_threads)
         rows = self.batches.take(stop - start)
         for loss in self.trainer.steps(rows, self.rates[start:stop]).tolist():
             memory = self.config.loop.loss_memory if math.isfinite(self.loss) else 0.0
@@ -150,6 +151,7 @@ class _Run:
 
     def _mine_hard_examples(self, floaters: bool) -> None:
         """From now on take samples on the wrong side more often, most those that cost most."""
+        assert self.error_radii is not None
         samples, config = self.task.samples, self.config.hard_examples
         field = self.trainer.outputs(self.trainer.weights, samples.points, samples.chart)[:, 0]
         radii = self.error_radii(field, config.error_radius, floaters)
@@ -190,7 +192,10 @@ class _Run:
         return replace(quantization, lambda_=left * quantization.lambda_)
 
     def _error(self, weights: Float32Array) -> float:
-        return self.task.objective.error(self._outputs(weights), self.task.held_out)
+        outputs = self._outputs(weights)
+        if not np.isfinite(outputs).all():
+            return math.nan
+        return self.task.objective.error(outputs, self.task.held_out)
 
     def _outputs(self, weights: Float32Array) -> Float32Array:
         held_out = self.task.held_out

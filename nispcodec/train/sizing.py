@@ -1,7 +1,7 @@
 """How large an asset's networks are: by short probes, and a model measured on eight assets.
 
-Every network is probed on its own: a small one learns for a few seconds, and the error that it is
-left with says how much there is to learn.
+Every network is probed on its own: a small one learns for `TrainConfig.probe_steps`, and the error
+that it is left with says how much there is to learn.
 """
 
 from __future__ import annotations

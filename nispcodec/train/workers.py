@@ -27,16 +27,18 @@ def fit_networks(
     """Fit all tasks in parallel; `threads` of them compute at any moment.
 
     The result depends on the tasks, the seed and the engine alone. An exception in one task, or
-    Ctrl-C, stops the others. `listen` is called from the calling thread.
+    Ctrl-C, stops the others. `listen` is called from the calling thread. Raises FitError, as a fit
+    does.
     """
     messages: queue.SimpleQueue[Message] = queue.SimpleQueue()
     cores = Cores(threads, len(tasks))
-    for number, task in enumerate(tasks):
-        work = (number, task, engine, seed, cores.of(number), messages)
-        threading.Thread(target=_work, args=work, daemon=True, name=f"fit {task.name}").start()
     # Matrix products of several threads would wait for each other, and sum in another order.
     with threadpool_limits(1):
         try:
+            for number, task in enumerate(tasks):
+                work = (number, task, engine, seed, cores.of(number), messages)
+                name = f"fit {task.name}"
+                threading.Thread(target=_work, args=work, daemon=True, name=name).start()
             networks = _collected(len(tasks), messages, listen, cores)
         finally:
             cores.stop()

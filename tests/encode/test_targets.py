@@ -23,7 +23,7 @@ from nispcodec.encode.targets import (
     fit_with_preset,
 )
 from nispcodec.format import pack
-from nispcodec.train.config import TrainingBudget
+from nispcodec.train.config import TargetConfig, TrainingBudget
 from nispcodec.train.task import Task
 from nispcodec.train.tasks import AssetProblem
 from nispcodec.train.workers import fit_networks
@@ -111,3 +111,10 @@ def test_the_probe_decides_the_width() -> None:
 
     widths = [fit_with_preset(fitting(fit))["sdf"].spec.hidden[0] for fit in (by_law, easier)]
     assert widths[0] > widths[1]
+
+
+def test_the_last_try_is_kept_even_if_it_is_too_good() -> None:
+    context = fitting()
+    config = replace(context.problem.config, target=TargetConfig(rounds=1))
+    once = replace(context, problem=replace(context.problem, config=config))
+    assert "sdf" in fit_to_error(once, 1e-3)

@@ -91,6 +91,13 @@ def test_a_useless_network_is_an_error(error: float) -> None:
         run(task)
 
 
+def test_answers_that_are_no_numbers_are_no_good_charts() -> None:
+    """The first chart is what `argmax` finds in them."""
+    task = chart_task(50)
+    with pytest.raises(FitError, match="found inf: the fit does not converge"):
+        run(replace(task, schedule=replace(task.schedule, rate=float("nan"))))
+
+
 def test_the_same_seed_gives_the_same_weights() -> None:
     first, again, other = (run(sdf_task(100), seed=seed) for seed in (0, 0, 1))
     assert np.array_equal(first.tensors["weight.1"], again.tensors["weight.1"])

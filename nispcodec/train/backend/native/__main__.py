@@ -9,4 +9,4 @@ from nispcodec.train.backend.native.library import NativeError, library
 try:
     library()
 except NativeError as why:
-    sys.exit(f"no native trainer: {why}; training takes torch")
+    sys.exit(f"no native backend: {why}; training takes torch")

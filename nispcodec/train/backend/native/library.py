@@ -190,7 +190,6 @@ _SIGNATURES: dict[str, tuple[Any, list[Any]]] = {
     "nisp_peak": (_L, [_L]),
     "nisp_trainer_new": (_P, [_P, _P, _P, _P]),
     "nisp_trainer_free": (None, [_P]),
-    "nisp_weight_count": (_L, [_P]),
     "nisp_set_threads": (_I, [_P, _I]),
     "nisp_restart": (None, [_P]),
     "nisp_resume": (None, [_P]),

@@ -32,7 +32,8 @@ class NearestGrid:
     ) -> Float32Array:
         """The same (n,) as `nispcodec.dataset.hard_examples.error_radii`, which explains them.
 
-        sdf and field are (n,) float32. Raises ValueError if they are not.
+        sdf and field are (n,) float32. Raises ValueError if they are not, or `limit` is no
+        distance, NativeError without memory.
         """
         checked("sdf", sdf, np.float32, self._count)
         checked("field", field, np.float32, self._count)

@@ -128,7 +128,8 @@ class NativeTrainer:
     def steps(self, rows: Int32Array, rates: Float32Array) -> Float32Array:
         """Take k steps with the samples `rows` (k, batch) at the rates (k,); their losses (k,).
 
-        Raises ValueError for rows that no sample has.
+        Raises ValueError for arrays of another kind and rows that no sample has, NativeError
+        without memory.
         """
         checked("rows", rows, np.int32, None, None)
         checked("rates", rates, np.float32, len(rows))
@@ -200,7 +201,7 @@ class NativeTrainer:
         done = int(self._functions.nisp_steps(self._trainer, *told, *results))
         if done < 0:
             raise NativeError("a training step: out of memory")
-        if self._fresh and done:
+        if self._fresh and len(rows):
             self._begin_soap()
         return done
 

@@ -43,7 +43,9 @@ def torch_engine(wanted: str) -> TorchEngine:
     cuda = torch.cuda.is_available()
     if wanted == "auto":
         return TorchEngine("cuda" if cuda else "cpu")
-    if wanted != "cpu" and not (cuda and wanted.partition(":")[0] == "cuda"):
-        found = "cpu, cuda" if cuda else "cpu alone"
+    kind, _, number = wanted.partition(":")
+    there = cuda and kind == "cuda" and int(number or 0) < torch.cuda.device_count()
+    if wanted != "cpu" and not there:
+        found = f"cpu, cuda:0 to cuda:{torch.cuda.device_count() - 1}" if cuda else "cpu alone"
         raise FitError(f"device: expected one that torch finds here ({found}), found {wanted!r}")
     return TorchEngine(wanted)

@@ -85,7 +85,6 @@ EXPORTED Trainer* nisp_trainer_new(const nisp::Topology* topology, const nisp::S
 }
 EXPORTED void nisp_trainer_free(Trainer* trainer) { delete trainer; }
 
-EXPORTED int64_t nisp_weight_count(const Trainer* trainer) { return trainer->weight_count(); }
 
 EXPORTED int32_t nisp_set_threads(Trainer* trainer, int32_t threads) {
     return succeeds([&] { trainer->set_threads(threads); });

@@ -7,7 +7,7 @@
 
 namespace nisp {
 
-// As the Python side fills it (`trainer.py`, _Topology). Change both together, and the version.
+// As the Python side fills it (`library.py`, Topology). Change both together, and the version.
 struct Topology {
     int32_t mirror;  // bits 0 to 2: axes that enter as absolute values; 3 to 5: signed ones behind
     int32_t hidden_layers;
@@ -58,7 +58,6 @@ class Network {
     }
 
     int hidden_layers() const { return static_cast<int>(layers.size()) - 1; }
-    int inputs() const { return layers[0].inputs; }
     int table_columns() const { return embedding + slope_columns + offset_columns; }
 
     // Where in the vector the number of a chart is: the tables are one after the other.

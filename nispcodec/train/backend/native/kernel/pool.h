@@ -15,20 +15,18 @@ namespace nisp {
 class Pool {
    public:
     explicit Pool(int threads) {
-        for (int worker = 1; worker < threads; worker++)
-            workers_.emplace_back([this, worker] { work(worker); });
-    }
-    ~Pool() {
-        {
-            std::lock_guard<std::mutex> lock(mutex_);
-            stopped_.store(true);
+        try {
+            for (int worker = 1; worker < threads; worker++)
+                workers_.emplace_back([this, worker] { work(worker); });
+        } catch (...) {  // A thread that could not be made; the others must not be left running.
+            stop();
+            throw;
         }
-        wake_.notify_all();
-        for (std::thread& worker : workers_) worker.join();
     }
+    ~Pool() { stop(); }
     int threads() const { return static_cast<int>(workers_.size()) + 1; }
 
-    // Calls task(number, worker) for the numbers from 0 to count - 1, at most MOST_TASKS; returns
+    // Calls task(number, worker) for the numbers from 0 to count - 1, below 2^15; returns
     // when all are done. The caller is worker 0.
     template <class Task>
     void run(int count, Task task) {
@@ -50,9 +48,16 @@ class Pool {
             if (turns > SPINS) std::this_thread::yield();
     }
 
-    static constexpr int MOST_TASKS = 1 << 15;
-
    private:
+    void stop() {
+        {
+            std::lock_guard<std::mutex> lock(mutex_);
+            stopped_.store(true);
+        }
+        wake_.notify_all();
+        for (std::thread& worker : workers_) worker.join();
+    }
+
     // Looks for work before a worker waits for it: some ten microseconds, as between two parts of a
     // step.
     static constexpr int SPINS = 2000;

@@ -5,7 +5,7 @@
 
 namespace nisp {
 
-// As the Python side fills it (`trainer.py`, _Settings). Change both together, and the version.
+// As the Python side fills it (`library.py`, Numbers). Change both together, and the version.
 struct Settings {
     float near_distance, sign_weight, sign_softness;  // LossConfig
     float w0, last_layer_rate, ema_weight, clip;

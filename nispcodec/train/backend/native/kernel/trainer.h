@@ -36,10 +36,9 @@ class Trainer {
 
     void set_threads(int threads) {
         if (pool_ && pool_->threads() == threads) return;
-        pool_.reset();
-        pool_ = std::make_unique<Pool>(threads);
         while (static_cast<int>(workers_.size()) < threads)
             workers_.push_back(std::make_unique<Worker>(network_));
+        pool_ = std::make_unique<Pool>(threads);
     }
 
     // The optimizers forget everything: the next step is a first one.
