@@ -141,7 +141,7 @@ def chosen(folder: Path, only: Sequence[str]) -> dict[str, Path]:
 @click.option("--new-python", type=click.Path(path_type=Path, exists=True), help="Likewise.")
 @click.option(
     "--assets",
-    type=click.Path(path_type=Path, exists=True),
+    type=click.Path(path_type=Path),
     default="../shared/assets",
     show_default=True,
 )
