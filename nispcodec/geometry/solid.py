@@ -14,7 +14,7 @@ import numpy as np
 
 from nispcodec.core.arrays import BoolArray, Float64Array, Int64Array
 from nispcodec.core.errors import MeshError
-from nispcodec.geometry.bodies import find_bodies, sentences, turn
+from nispcodec.geometry.bodies import Bodies, find_bodies, sentences, turn
 from nispcodec.geometry.config import SolidConfig
 from nispcodec.geometry.enclosing import free_faces
 from nispcodec.geometry.reach import reach_of, rim_points, shared_corners
@@ -64,51 +64,89 @@ def build_solid(
     corners (m, 3, 3): every face's corners, normalized frame; `welding` is that of the mesh.
     Raises MeshError when no face can be seen from outside.
     """
-    given, found = corners, find_bodies(corners, welding.positions, config)
-    corners = turn(corners, found.turned)
-    free = free_faces(corners, found, config)
-    # Faces back to back that have no inside are two sides of a sheet, and stay so.
-    two_sided = free & found.two_sided
-    if (two_sided & found.turned).any():
-        corners = turn(given, found.turned & ~two_sided)
-    told = sentences(found, area(corners), free)
-    free &= ~two_sided
-    once = two_sided | ~found.spare
+    bodies = find_bodies(corners, welding.positions, config)
+    faces = _in_order(corners, bodies, config)
+    enclosing = faces.corners[~faces.free & faces.once]
     winding = Winding(
-        corners[~free & once], config.winding_accuracy, config.rough_accuracy, config.rough_margin
+        enclosing, config.winding_accuracy, config.rough_accuracy, config.rough_margin
     )
-    behind = ~free & ~once & found.two_sided
-    shown = np.flatnonzero(~free & ~behind)
-    pieces, parents, kind, front, whole = _classify(winding, corners[shown], shown, config)
-    hidden = kind == _HIDDEN
-    total = area(corners).sum()
-    hidden_area = area(pieces[hidden]).sum() + area(corners[behind]).sum()
-    all_pieces = np.concatenate([pieces[~hidden], corners[free]])
-    if not len(all_pieces):
+    shown = np.flatnonzero(~faces.free & ~faces.behind)
+    pieces, parents, kind, front, whole = _classify(winding, faces.corners[shown], shown, config)
+    seen, sheets = kind != _HIDDEN, faces.corners[faces.free]
+    kept = np.concatenate([pieces[seen], sheets])
+    if not len(kept):
         raise MeshError(f"expected faces to be seen from outside, found {len(corners)} hidden ones")
-    kinds = np.concatenate([kind[~hidden], np.full(free.sum(), _OPEN)])
-    open_surface = kinds != _OUTER
-    open_area, front_of = area(all_pieces[open_surface]).sum(), normals(all_pieces)
-    gaps = shared_corners(pieces, hidden)
-    closed_rim = found.rim[~free[found.rim // 3] & ~two_sided[found.rim // 3]]
-    rim = rim_points(corners, closed_rim, config.rim_step)
-    whole &= kind == _OUTER
-    reach = np.zeros(len(pieces))
-    reach[whole] = reach_of(pieces[whole], gaps, rim, config.gap_margin)
+    kinds = np.concatenate([kind[seen], np.full(len(sheets), _OPEN)])
+    reach = _reach(
+        pieces, kind, whole, rim_points(faces.corners, faces.rim, config.rim_step), config
+    )
+    hidden = area(pieces[~seen]).sum() + area(faces.corners[faces.behind]).sum()
+    total = area(faces.corners).sum()
     return Solid(
-        pieces=all_pieces,
-        parents=np.concatenate([parents[~hidden], np.flatnonzero(free)]),
-        normals=front_of,
-        open_surface=open_surface,
+        pieces=kept,
+        parents=np.concatenate([parents[seen], np.flatnonzero(faces.free)]),
+        normals=normals(kept),
+        open_surface=kinds != _OUTER,
         wall=kinds != _OPEN,
         winding=winding,
-        inside_front=np.concatenate([np.abs(front[~hidden]) > 0.5, np.zeros(free.sum(), bool)]),
-        reach=np.concatenate([reach[~hidden], np.zeros(free.sum())]),
+        inside_front=np.concatenate([np.abs(front[seen]) > 0.5, np.zeros(len(sheets), bool)]),
+        reach=np.concatenate([reach[seen], np.zeros(len(sheets))]),
         half_thickness=config.half_thickness,
-        hidden_share=float(hidden_area / total),
-        open_surface_share=float(open_area / total),
-        warnings=told,
+        hidden_share=float(hidden / total),
+        open_surface_share=float(area(kept[kinds != _OUTER]).sum() / total),
+        warnings=faces.warnings,
     )
+
+
+@dataclass(frozen=True)
+class _Faces:
+    """The m faces of a mesh, turned and each in its place.
+
+    corners   (m, 3, 3), the wrong ones turned
+    free      (m,) bool: of sheets that enclose nothing
+    once      (m,) bool: that enclose, without those that are there already
+    behind    (m,) bool: the backs of faces of bodies
+    rim       (b,) sides of faces where what encloses ends
+    warnings  what was done about them
+    """
+
+    corners: Float64Array
+    free: BoolArray
+    once: BoolArray
+    behind: BoolArray
+    rim: Int64Array
+    warnings: tuple[str, ...]
+
+
+def _in_order(corners: Float64Array, bodies: Bodies, config: SolidConfig) -> _Faces:
+    turned = turn(corners, bodies.turned)
+    sheets = free_faces(turned, bodies, config)
+    # Faces back to back that have no inside are two sides of a sheet, and stay so.
+    two_sided = sheets & bodies.two_sided
+    if (two_sided & bodies.turned).any():
+        turned = turn(corners, bodies.turned & ~two_sided)
+    free = sheets & ~two_sided
+    once = two_sided | ~bodies.spare
+    face = bodies.rim // 3
+    return _Faces(
+        corners=turned,
+        free=free,
+        once=once,
+        behind=~free & ~once & bodies.two_sided,
+        rim=bodies.rim[~free[face] & ~two_sided[face]],
+        warnings=sentences(bodies, area(turned), sheets),
+    )
+
+
+def _reach(
+    pieces: Float64Array, kind: Int64Array, whole: BoolArray, rim: Float64Array, config: SolidConfig
+) -> Float64Array:
+    """How far each piece may answer for the side of a point; 0 where it is no whole wall."""
+    walls = whole & (kind == _OUTER)
+    reach = np.zeros(len(pieces))
+    gaps = shared_corners(pieces, kind == _HIDDEN)
+    reach[walls] = reach_of(pieces[walls], gaps, rim, config.gap_margin)
+    return reach
 
 
 _OUTER, _HIDDEN, _OPEN, _THIN, _MIXED = range(5)
