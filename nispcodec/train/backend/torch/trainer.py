@@ -110,7 +110,7 @@ class TorchTrainer:
         outputs = self._forward(used, batch.points, batch.chart)
         loss = self._loss(outputs, batch, self._task.config.loss)
         self._weights.grad = None
-        loss.backward()  # type: ignore[no-untyped-call]
+        torch.autograd.backward(loss)
         return loss.detach()
 
     def _clip(self) -> None:
