@@ -152,8 +152,9 @@ class QuantizeConfig:
     slight             times the held-out error that needs no other try ...
     large              ... but for networks of so many weights, whose rounding takes long, ...
     notable            ... which may rise by this before it is tried again
-    spoiled            times the held-out error that say that a network's curvature was no guide, as
-                       after a very short fit: ...
+    unnoticed          share of a good error that nobody notices
+    spoiled            times the held-out error, or that, that say that a network's curvature was no
+                       guide, as after a very short fit: ...
     finer              ... the next try takes so much of its lambda
     """
 
@@ -175,6 +176,7 @@ class QuantizeConfig:
     slight: float = 1.05
     large: int = 8_000
     notable: float = 1.15
+    unnoticed: float = 0.1
     spoiled: float = 3.0
     finer: float = 0.03
 

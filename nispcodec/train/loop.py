@@ -172,12 +172,13 @@ class _Run:
         )
         rise = config.slight if len(self.best) < config.large else config.notable
         absolute = self._absolute(quantization)
+        spoiled = config.spoiled * max(before, config.unnoticed * self.task.objective.good)
         tries: list[tuple[float, Float32Array, Float64Array]] = []
         while len(tries) < config.tries and all(error > before * rise for error, *_ in tries):
             self._tell("quantize", self.task.schedule.steps, before, 0.0, "")
             weights, steps = round_weights(unrounded, absolute, self.random)
             tries.append((self._error(weights), weights, steps))
-            if tries[-1][0] > config.spoiled * before:
+            if tries[-1][0] > spoiled:
                 absolute = replace(absolute, lambda_=config.finer * absolute.lambda_)
         after, weights, steps = min(tries, key=lambda each: each[0])
         note = f"held-out error {before:.3g} before, {after:.3g} after"
