@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 
 from nispcodec.core.asset import TexturedMesh
-from nispcodec.core.document import Document
+from nispcodec.core.document import Document, Field
 from nispcodec.core.network import Network
 from nispcodec.core.progress import Listener, Progress, silent
 from nispcodec.dataset.recipes import paper_training_sets, training_sets
@@ -50,13 +50,15 @@ def encode(
     def document(networks: Mapping[str, Network]) -> Document:
         return Document(
             frame=short_frame(analysis.frame, tuning.negligible),
-            charts=short_uv_map(analysis.table, tuning.negligible),
             materials=materials,
             textures=textures,
-            sdf=networks["sdf"],
-            chart=networks.get("chart"),
-            uv=networks.get("uv"),
-            half_thickness=_half_thickness(analysis, tuning),
+            field=Field(
+                charts=short_uv_map(analysis.table, tuning.negligible),
+                sdf=networks["sdf"],
+                chart=networks.get("chart"),
+                uv=networks.get("uv"),
+                half_thickness=_half_thickness(analysis, tuning),
+            ),
         )
 
     progress(Progress(stage="fit"))

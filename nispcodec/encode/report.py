@@ -29,11 +29,11 @@ def measured(
         "open_surface_share": _short(analysis.solid.open_surface_share),
         "distance_error": _short(distance.mean()),
     }
-    charts = model.charts(surface.points, frame="normalized")
-    if document.chart is not None:
+    charts, field = model.charts(surface.points, frame="normalized"), document.field
+    if field and field.chart is not None:
         found["chart_accuracy"] = _short((charts == surface.chart).mean())
-    if document.uv is not None:
-        wanted = surface.uv * document.charts.uv_scale + document.charts.uv_offset
+    if field and field.uv is not None:
+        wanted = surface.uv * field.charts.uv_scale + field.charts.uv_offset
         off = np.linalg.norm(model.uv(surface.points, "normalized", charts) - wanted, axis=1)
         found["uv_error_median"] = _short(np.median(off))
         found["uv_error_mean"] = _short(off.mean())

@@ -6,10 +6,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from nispcodec.core.asset import Texture
-from nispcodec.core.document import Document
+from nispcodec.core.document import Document, Field
 from nispcodec.core.errors import FormatError
-from nispcodec.format import metadata, weights
-from nispcodec.format.constants import META, NETS, SECTIONS, TXTR
+from nispcodec.format import mesh, metadata, weights
+from nispcodec.format.constants import MESH, META, NETS, SECTIONS, TXTR
 from nispcodec.format.container import Entry, content, read_container, write_container
 from nispcodec.format.record import located
 
@@ -41,9 +41,12 @@ def pack(document: Document, coding: str | None = None) -> bytes:
         raise FormatError(known[0], "extra", "a code unknown to this version", known[0])
     sections = [
         (META, True, metadata.encode(document)),
-        (NETS, True, weights.encode(document.networks, coding)),
         *((code, False, data) for code, data in document.extra.items()),
     ]
+    if document.field:
+        sections.append((NETS, True, weights.encode(document.networks, coding)))
+    if document.meshes:
+        sections.append((MESH, True, mesh.encode(document.meshes)))
     if document.textures:
         sections.append((TXTR, True, b"".join(texture.data for texture in document.textures)))
     return write_container(sections)
@@ -80,23 +83,41 @@ def _parse(data: bytes) -> tuple[Document, dict[str, Entry], dict[str, int]]:
     """Document, table entries by code, bytes of each network in NETS."""
     entries = _by_code(read_container(data))
     meta = metadata.decode(_required(entries, META))
-    networks, lengths = weights.decode(meta.specs, _required(entries, NETS))
+    field, lengths = _read_field(meta, entries)
+    meshes = mesh.decode(_required(entries, MESH)) if MESH in entries else ()
     textures = _read_textures(meta, entries)
     unknown = {code: entry for code, entry in entries.items() if code not in SECTIONS}
     with located(META, "document"):
         document = Document(
             frame=meta.frame,
-            charts=meta.charts,
             materials=meta.materials,
             textures=textures,
-            sdf=networks["sdf"],
-            chart=networks.get("chart"),
-            uv=networks.get("uv"),
-            half_thickness=meta.half_thickness,
+            field=field,
+            meshes=meshes,
             info=meta.info,
             extra={code: bytes(content(entry)) for code, entry in unknown.items()},
         )
     return document, entries, lengths
+
+
+def _read_field(
+    meta: metadata.Metadata, entries: Mapping[str, Entry]
+) -> tuple[Field | None, dict[str, int]]:
+    """The field, if META has networks, and the bytes of each network in NETS."""
+    if meta.charts is None:
+        if NETS in entries:
+            raise FormatError(NETS, "section", "absent without networks", "present")
+        return None, {}
+    networks, lengths = weights.decode(meta.specs, _required(entries, NETS))
+    with located(META, "document"):
+        field = Field(
+            charts=meta.charts,
+            sdf=networks["sdf"],
+            chart=networks.get("chart"),
+            uv=networks.get("uv"),
+            half_thickness=meta.half_thickness,
+        )
+    return field, lengths
 
 
 def _by_code(entries: list[Entry]) -> dict[str, Entry]:

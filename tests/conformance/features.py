@@ -12,13 +12,14 @@ from PIL import Image
 
 from nispcodec.core.arrays import Uint8Array
 from nispcodec.core.asset import WRAPS, Material, Texture, TextureMap
-from nispcodec.core.document import ChartTable, Document, Frame
+from nispcodec.core.document import ChartTable, Document, Field, Frame
 from nispcodec.core.initial_weights import initial_integers, predicted
 from nispcodec.core.network import Network, NetworkSpec
 from nispcodec.core.slots import SLOTS
 from nispcodec.format import pack
 from tests.conformance.builder import container
 from tests.conformance.malformed import rows
+from tests.tiny import field_of, varied
 
 
 def network(hidden: tuple[int, ...], outputs: int, seed: int, **options: Any) -> Network:
@@ -106,21 +107,25 @@ def plain() -> Document:
     """One chart without UV, one material, an SDF network."""
     return Document(
         frame=Frame((0.0, 0.0, 0.0), 1.0),
-        charts=ChartTable(np.zeros(1, np.int32), np.zeros(1, np.bool_)),
         materials=(Material(base_color=(0.5, 0.25, 0.125, 1.0)),),
         textures=(),
-        sdf=network((12, 11), 1, 0),
+        field=Field(
+            charts=ChartTable(np.zeros(1, np.int32), np.zeros(1, np.bool_)),
+            sdf=network((12, 11), 1, 0),
+        ),
     )
 
 
 def textured(used: TextureMap | None = None, image: Texture | None = None) -> Document:
     """Two charts with UV, one material with a base color map."""
     material = Material("painted", maps={"base_color": used or TextureMap(0)})
-    return dataclasses.replace(
-        plain(),
+    return varied(
+        dataclasses.replace(
+            plain(),
+            materials=(material,),
+            textures=(image or texture("paint.png", "image/png", pixels(5, 4)),),
+        ),
         charts=ChartTable(np.zeros(2, np.int32), np.ones(2, np.bool_)),
-        materials=(material,),
-        textures=(image or texture("paint.png", "image/png", pixels(5, 4)),),
         chart=network((8,), 2, 1),
         uv=network((8, 8), 2, 2, conditioning="embedding", charts=2, embedding=3),
     )
@@ -137,12 +142,12 @@ def features() -> Iterator[tuple[str, bytes]]:
 
 def _codings() -> Iterator[tuple[str, bytes]]:
     kinds = {
-        "float32": plain().sdf,
-        "float16": rounded(plain().sdf),
-        "pruned": pruned(plain().sdf),
-        "symbols": quantized(plain().sdf, 0.01),
-        "pruned-symbols": quantized(pruned(plain().sdf), 0.0078125),
-        "wide-symbols": quantized(plain().sdf, 1e-6),
+        "float32": field_of(plain()).sdf,
+        "float16": rounded(field_of(plain()).sdf),
+        "pruned": pruned(field_of(plain()).sdf),
+        "symbols": quantized(field_of(plain()).sdf, 0.01),
+        "pruned-symbols": quantized(pruned(field_of(plain()).sdf), 0.0078125),
+        "wide-symbols": quantized(field_of(plain()).sdf, 1e-6),
     }
     for kind, sdf in kinds.items():
         for coding in (
@@ -150,21 +155,22 @@ def _codings() -> Iterator[tuple[str, bytes]]:
             if "pruned" not in kind
             else ("coo", "csc", "csr", "dia", "entropy")
         ):
-            document = dataclasses.replace(plain(), sdf=sdf)
+            document = varied(plain(), sdf=sdf)
             yield f"coding-{coding}-{kind}", pack(document, coding)
     for number in (0, 2**32 - 1):
         drawn = moved(network((12, 11), 1, 0, init_seed=number), 0.0078125)
-        yield f"coding-delta-init-{number}", pack(dataclasses.replace(plain(), sdf=drawn))
+        yield f"coding-delta-init-{number}", pack(varied(plain(), sdf=drawn))
     for width in (1, 2, 3):
-        yield f"row-shifts-{width}", pack(dataclasses.replace(plain(), sdf=rows_apart(width)))
-    coarse = dataclasses.replace(plain(), sdf=rows_apart(3))
+        yield f"row-shifts-{width}", pack(varied(plain(), sdf=rows_apart(width)))
+    coarse = varied(plain(), sdf=rows_apart(3))
     for coding in ("dense", "csc", "dia", "entropy"):
         yield f"row-shifts-{coding}", pack(coarse, coding)
     long = quantized(pruned(network((182, 182), 1, 12)), 0.0078125)
-    yield "coding-entropy-long", pack(dataclasses.replace(plain(), sdf=long), "entropy")
-    empty = Network(plain().sdf.spec, {k: v * 0 for k, v in plain().sdf.tensors.items()})
+    yield "coding-entropy-long", pack(varied(plain(), sdf=long), "entropy")
+    first = field_of(plain()).sdf
+    empty = Network(first.spec, {name: 0 * values for name, values in first.tensors.items()})
     for coding in ("coo", "csr", "dia", "entropy"):
-        yield f"coding-{coding}-empty", pack(dataclasses.replace(plain(), sdf=empty), coding)
+        yield f"coding-{coding}-empty", pack(varied(plain(), sdf=empty), coding)
 
 
 def _topologies() -> Iterator[tuple[str, bytes]]:
@@ -179,7 +185,7 @@ def _topologies() -> Iterator[tuple[str, bytes]]:
         "signed-axes": network((9, 8), 1, 14, mirror=0b011011),
     }
     for name, sdf in sdfs.items():
-        yield f"topology-{name}", pack(dataclasses.replace(plain(), sdf=sdf))
+        yield f"topology-{name}", pack(varied(plain(), sdf=sdf))
     uvs: dict[str, dict[str, Any]] = {
         "none": {},
         "scalar": {"conditioning": "scalar", "charts": 2},
@@ -202,7 +208,7 @@ def _topologies() -> Iterator[tuple[str, bytes]]:
         },
     }
     for name, options in uvs.items():
-        document = dataclasses.replace(textured(), uv=network((10, 9), 2, 8, **options))
+        document = varied(textured(), uv=network((10, 9), 2, 8, **options))
         yield f"conditioning-{name}", pack(document)
 
 
@@ -210,37 +216,35 @@ def _tables() -> Iterator[tuple[str, bytes]]:
     base = textured()
     frame = Frame((1e6 + 1 / 3, -2000.125, 0.1), 1234.5678)
     yield "frame-far-away", pack(dataclasses.replace(base, frame=frame))
-    table = dataclasses.replace(base.charts, uv_offset=(-1.5, 0.1), uv_scale=(3.0, 0.7))
-    yield "uv-map", pack(dataclasses.replace(base, charts=table))
+    table = dataclasses.replace(field_of(base).charts, uv_offset=(-1.5, 0.1), uv_scale=(3.0, 0.7))
+    yield "uv-map", pack(varied(base, charts=table))
     table = ChartTable(np.array([0, 1, 0, 1, 1], np.int32), np.array([1, 0, 1, 1, 0], np.bool_))
     uv = network((8,), 2, 9, conditioning="scalar", charts=5)
     materials = (base.materials[0], Material("glass", (0.1, 0.5, 0.9, 0.25), alpha_mode="blend"))
-    five = dataclasses.replace(
-        base, charts=table, materials=materials, chart=network((9,), 5, 10), uv=uv
-    )
+    five = varied(base, charts=table, materials=materials, chart=network((9,), 5, 10), uv=uv)
     yield "charts-five", pack(five)
     kinds = tuple(Material(f"m{i}", (i / 256, 1 - i / 256, 0.5, 1.0)) for i in range(257))
     many = ChartTable(np.arange(257, dtype=np.int32)[::-1].copy(), np.zeros(257, np.bool_))
     wide = rounded(network((4,), 257, 11))
     yield (
         "charts-many",
-        pack(dataclasses.replace(plain(), charts=many, materials=kinds, chart=wide)),
+        pack(varied(plain(), charts=many, materials=kinds, chart=wide)),
     )
-    assert base.chart is not None
+    pair = field_of(base).networks["chart"]
     tie = {name: tensor[[0, 0]] if name in ("weight.1", "bias.1") else tensor
-           for name, tensor in base.chart.tensors.items()}  # fmt: skip
-    yield "charts-tie", pack(dataclasses.replace(base, chart=Network(base.chart.spec, tie)))
-    yield "half-thickness", pack(dataclasses.replace(plain(), half_thickness=0.015625))
+           for name, tensor in pair.tensors.items()}  # fmt: skip
+    yield "charts-tie", pack(varied(base, chart=Network(pair.spec, tie)))
+    yield "half-thickness", pack(varied(plain(), half_thickness=0.015625))
     flags = np.array([1, 0], np.bool_)
-    opened = dataclasses.replace(base.charts, has_uv=flags, openings=True)
-    yield "openings", pack(dataclasses.replace(base, charts=opened))
+    opened = dataclasses.replace(field_of(base).charts, has_uv=flags, openings=True)
+    yield "openings", pack(varied(base, charts=opened))
 
 
 def _materials() -> Iterator[tuple[str, bytes]]:
     stretched = ChartTable(np.zeros(2, np.int32), np.ones(2, np.bool_), (-3.0, -3.0), (7.0, 7.0))
     for u, v in zip(WRAPS, WRAPS[1:] + WRAPS[:1], strict=True):
         document = textured(TextureMap(0, (u, v)))
-        yield f"wrap-{u}-{v}", pack(dataclasses.replace(document, charts=stretched))
+        yield f"wrap-{u}-{v}", pack(varied(document, charts=stretched))
     yield "filter-nearest", pack(textured(TextureMap(0, filter="nearest")))
     opaque = pixels(8, 8)[..., :3]
     yield "image-jpeg", pack(textured(image=texture("a.jpg", "image/jpeg", opaque, quality=90)))

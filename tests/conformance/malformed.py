@@ -197,7 +197,7 @@ _FIELDS: dict[str, tuple[dict[int, Any], str]] = {
     "frame-of-three": ({1: FRAME[1:]}, "document.frame"),
     "frame-of-integers": ({1: [0, 0, 0, 1]}, "document.frame"),
     "frame-flat": ({1: [0.0] * 4}, "document.frame"),
-    "networks-missing": ({2: None}, "document.networks"),
+    "networks-missing": ({2: None}, "document.keys"),
     "networks-unknown": ({2: {1: {1: [2]}, 4: {1: [2]}}}, "networks.keys"),
     "sdf-missing": ({2: {}}, "networks.sdf"),
     "charts-none": ({3: 0}, "document.charts"),

@@ -49,8 +49,8 @@ def answers(data: bytes) -> dict[str, Any]:
 def _steady(model: NispModel, points: Float32Array) -> BoolArray:
     """(n,) bool: clear of borders of charts (or right on one, in a tie) and of texels."""
     steady = np.ones(len(points), np.bool_)
-    if model.document.chart is not None:
-        logits = np.sort(evaluate(model.document.chart, points), axis=1)
+    if "chart" in model.document.networks:
+        logits = np.sort(evaluate(model.document.networks["chart"], points), axis=1)
         margin = logits[:, -1] - logits[:, -2]
         steady &= (margin > 0.01) | (margin == 0)
     for texture in model.document.textures:

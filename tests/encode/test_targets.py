@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from nispcodec import Material, NispError
-from nispcodec.core.document import ChartTable, Document, Frame
+from nispcodec.core.document import ChartTable, Document, Field, Frame
 from nispcodec.core.errors import FitError
 from nispcodec.core.network import Network
 from nispcodec.core.progress import Listener, Progress, silent
@@ -61,7 +61,7 @@ def fitting(fit: Fit = by_law, listen: Listener = silent) -> FitContext:
 
 def document(networks: Mapping[str, Network]) -> Document:
     frame = Frame((0.0, 0.0, 0.0), 1.0)
-    return Document(frame, TABLE, (Material("one"),), (), sdf=networks["sdf"])
+    return Document(frame, (Material("one"),), (), Field(TABLE, networks["sdf"]))
 
 
 @pytest.mark.slow

@@ -139,7 +139,7 @@ def test_what_makes_no_sense_is_an_error(
 
 def written(network: Network) -> Network:
     """The network as it comes back from a file."""
-    return unpack(pack(tiny.document(sdf=network))).sdf
+    return unpack(pack(tiny.document(sdf=network))).networks["sdf"]
 
 
 @pytest.mark.parametrize("optimizer", ["muon", "adam"])
