@@ -36,22 +36,6 @@ class Placement:
     uv_offset: tuple[float, float] = (0.0, 0.0)
     materials: Int32Array | None = None
 
-    def apply(self, points: Float64Array) -> Float64Array:
-        """Points (n, 3) of the part, normalized frame -> (n, 3) float64 where the copy stands."""
-        turned = points * [-1.0, 1.0, 1.0] if self.mirrored else points
-        return self.scale * turned @ self.matrix().T + np.asarray(self.offset)
-
-    def matrix(self) -> Float64Array:
-        """(3, 3) float64: the rotation."""
-        w, x, y, z = np.asarray(self.rotation) / np.linalg.norm(self.rotation)
-        return np.array(
-            [
-                [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
-                [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
-                [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
-            ]
-        )
-
 
 @dataclass(frozen=True)
 class MeshPart:

@@ -10,6 +10,7 @@ from nispcodec.core.arrays import Int32Array
 from nispcodec.core.asset import TexturedMesh
 from nispcodec.core.document import Document
 from nispcodec.core.mesh_part import MeshPart, Placement
+from nispcodec.infer.placements import placed_points
 
 
 def joined(document: Document, field: TexturedMesh | None) -> TexturedMesh:
@@ -57,7 +58,7 @@ def _copy(document: Document, part: MeshPart, placement: Placement) -> TexturedM
     materials = part.chart_materials if placement.materials is None else placement.materials
     turned = placement.mirrored
     return TexturedMesh(
-        positions=document.frame.to_world(placement.apply(part.normalized())),
+        positions=document.frame.to_world(placed_points(placement, part.normalized())),
         faces=_winding(part.faces, turned),
         uvs=part.asset_uvs() * placement.uv_scale + placement.uv_offset,
         uv_faces=_winding(part.uv_faces, turned),
@@ -69,7 +70,7 @@ def _copy(document: Document, part: MeshPart, placement: Placement) -> TexturedM
 
 def _winding(faces: Int32Array, turned: bool) -> Int32Array:
     """A reflection turns the faces inside out: they are wound the other way again."""
-    return faces[:, ::-1].copy() if turned else faces
+    return faces[:, [0, 2, 1]] if turned else faces
 
 
 def _shifts(lengths: Sequence[int]) -> list[int]:
