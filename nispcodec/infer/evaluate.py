@@ -103,10 +103,9 @@ class _Forward:
             for (weight, bias), scale in zip(network.layers, scales, strict=True)
         ]
         self.embedding: Float32Array | None = None
-        if self.spec.embedding:
-            self.embedding = np.ascontiguousarray(network.tensors["embedding"].T)
         self.frames: Float32Array | None = None
         if self.spec.conditioning == "chart_affine":
+            self.embedding = np.ascontiguousarray(network.tensors["embedding"].T)
             self.frames = _frames(network)
         self.mirrored = np.array(self.spec.mirrored)[:, None]
         self._own = local()

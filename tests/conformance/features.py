@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import math
 from collections.abc import Iterator
 from io import BytesIO
 from typing import Any
@@ -13,27 +14,41 @@ from PIL import Image
 from nispcodec.core.arrays import Uint8Array
 from nispcodec.core.asset import WRAPS, Material, Texture, TextureMap
 from nispcodec.core.document import ChartTable, Document, Field, Frame
-from nispcodec.core.initial_weights import initial_integers, predicted
+from nispcodec.core.initial_weights import predicted
 from nispcodec.core.network import Network, NetworkSpec
 from nispcodec.core.slots import SLOTS
-from nispcodec.format import pack
+from nispcodec.format import metadata, pack
+from nispcodec.format.codings import entropy
+from nispcodec.format.codings.registry import BY_NAME
+from nispcodec.format.records import Record, tensors
 from tests.conformance.builder import container
 from tests.conformance.malformed import rows
 from tests.tiny import field_of, varied
+
+SYMBOL_STEP = 2.0**-9
+ROW_STEP = 2.0**-14
 
 
 def network(hidden: tuple[int, ...], outputs: int, seed: int, **options: Any) -> Network:
     """Weights as a sine network has them after training: small but in the first layer."""
     spec = NetworkSpec(hidden, outputs, **options)
     generator = np.random.default_rng(seed)
-    tensors = {}
-    for name, shape in spec.shapes.items():
-        spread = 1.0 if spec.activation == "relu" or name.endswith(".0") else spec.w0
-        limit = np.sqrt(6 / shape[-1]) / spread if name.startswith("weight") else 0.3
-        tensors[name] = generator.uniform(-limit, limit, shape).astype(np.float32)
-    last = f"weight.{len(hidden)}"
-    tensors[last] = tensors[last] * np.float32(spec.w0 if spec.activation == "sine" else 1)
+    tensors = {
+        name: generator.uniform(-limit, limit, spec.shapes[name]).astype(np.float32)
+        for name, limit in limits(spec).items()
+    }
     return Network(spec, tensors)
+
+
+def limits(spec: NetworkSpec) -> dict[str, float]:
+    """How large the weights of every tensor usually are at most."""
+    sine = spec.activation == "sine"
+    found = {}
+    for name, shape in spec.shapes.items():
+        inner = sine and not name.endswith((".0", f".{len(spec.hidden)}"))
+        spread = spec.w0 if inner else 1.0
+        found[name] = math.sqrt(6 / shape[-1]) / spread if name.startswith("weight") else 0.3
+    return found
 
 
 def rounded(source: Network) -> Network:
@@ -64,28 +79,25 @@ def quantized(source: Network, step: float) -> Network:
     return Network(source.spec, tensors, steps)
 
 
-def moved(source: Network, step: float) -> Network:
-    """Symbols a few steps from where the draws begin, biases but not the last."""
+def moved(spec: NetworkSpec, step: float) -> Network:
+    """Symbols a few steps from the initial weights, biases but not the last."""
     generator = np.random.default_rng(2)
-    tensors, place = {}, 0
-    for name, shape in source.spec.shapes.items():
-        count = int(np.prod(shape))
-        began = predicted(
-            initial_integers(source.spec.init_seed, place, count), 90, np.zeros(1, np.int64)
-        )
-        symbols = generator.normal(0, 2 if count > 1 else 60, count).round() + began * (count > 1)
-        tensors[name] = symbols.astype(np.float32).reshape(shape) * np.float32(step)
-        place += count
-    return Network(source.spec, tensors, dict.fromkeys(tensors, step))
+    tensors, initial = {}, spec.initial_integers(spec.shapes)
+    for name, limit in limits(spec).items():
+        began = predicted(initial[name], round(limit / step), np.zeros(1, np.int64))
+        lone = began.size == 1
+        symbols = generator.normal(0, 60 if lone else 2, began.shape).round() + began * (not lone)
+        tensors[name] = symbols.astype(np.float32) * np.float32(step)
+    return Network(spec, tensors, dict.fromkeys(tensors, step))
 
 
 def rows_apart(width: int) -> Network:
-    """Symbols of draws and more, each row's with a row shift of its own, up to so many bits."""
-    source = moved(network((12, 11), 1, 0), 2.0**-10)
+    """Symbols about initial weights, each row's with a row shift of its own, of so many bits."""
+    source = moved(NetworkSpec((12, 11), 1), ROW_STEP)
     generator = np.random.default_rng(3)
     tensors = {}
     for name, tensor in source.tensors.items():
-        grid = np.float32(2.0**-10) * 2 ** generator.integers(0, 1 << width, (len(tensor), 1))
+        grid = np.float32(ROW_STEP) * 2 ** generator.integers(0, 1 << width, (len(tensor), 1))
         matrix = tensor.reshape(len(tensor), -1)
         tensors[name] = (np.rint(matrix / grid) * grid).astype(np.float32).reshape(tensor.shape)
     return Network(source.spec, tensors, source.steps)
@@ -127,7 +139,7 @@ def textured(used: TextureMap | None = None, image: Texture | None = None) -> Do
         ),
         charts=ChartTable(np.zeros(2, np.int32), np.ones(2, np.bool_)),
         chart=network((8,), 2, 1),
-        uv=network((8, 8), 2, 2, conditioning="embedding", charts=2, embedding=3),
+        uv=network((8, 8), 2, 2, conditioning="chart_affine", charts=2, embedding=3),
     )
 
 
@@ -158,10 +170,11 @@ def _codings() -> Iterator[tuple[str, bytes]]:
             document = varied(plain(), sdf=sdf)
             yield f"coding-{coding}-{kind}", pack(document, coding)
     for number in (0, 2**32 - 1):
-        drawn = moved(network((12, 11), 1, 0, init_seed=number), 0.0078125)
+        drawn = moved(NetworkSpec((12, 11), 1, init_seed=number), SYMBOL_STEP)
         yield f"coding-delta-init-{number}", pack(varied(plain(), sdf=drawn))
     for width in (1, 2, 3):
         yield f"row-shifts-{width}", pack(varied(plain(), sdf=rows_apart(width)))
+    yield "wide-tag", _together(moved(NetworkSpec((6, 5, 4), 1), SYMBOL_STEP))
     coarse = varied(plain(), sdf=rows_apart(3))
     for coding in ("dense", "csc", "dia", "entropy"):
         yield f"row-shifts-{coding}", pack(coarse, coding)
@@ -171,6 +184,15 @@ def _codings() -> Iterator[tuple[str, bytes]]:
     empty = Network(first.spec, {name: 0 * values for name, values in first.tensors.items()})
     for coding in ("coo", "csr", "dia", "entropy"):
         yield f"coding-{coding}-empty", pack(varied(plain(), sdf=empty), coding)
+
+
+def _together(sdf: Network) -> bytes:
+    """All tensors in one record, more than a tag of one byte can say."""
+    record = Record(BY_NAME["delta_init"], tensors("sdf", sdf), None, 0)
+    assert record.run is not None
+    data = record.encode() + entropy.encode([record.run])
+    document = varied(plain(), sdf=sdf)
+    return container(rows(metadata.encode(document), data))
 
 
 def _topologies() -> Iterator[tuple[str, bytes]]:
@@ -197,7 +219,6 @@ def _topologies() -> Iterator[tuple[str, bytes]]:
             **fourier,
             "mirror": 0b010010,
         },
-        "embedding": {"conditioning": "embedding", "charts": 2, "embedding": 4},
         "chart-affine": {"conditioning": "chart_affine", "charts": 2, "embedding": 4},
         "chart-affine-signed-axes": {
             "conditioning": "chart_affine",

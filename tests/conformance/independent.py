@@ -33,6 +33,7 @@ class Reader:
         self.chart_materials = numbers(meta.get(4), self.k, len(self.materials))
         self.has_uv = flags(meta.get(5), self.k)
         self.uv_map = meta.get(6, [0.0, 0.0, 1.0, 1.0])
+        self.openings = int(meta.get(11, False))
         self.specs = {number: topology(fields) for number, fields in sorted(meta[2].items())}
         tensors = [(self.shapes(number), made["init_seed"]) for number, made in self.specs.items()]
         weights = DECODER["read_nets"](unpacked(rows["NETS"]), tensors)
@@ -47,7 +48,6 @@ class Reader:
         widths = [inputs + made["embedding"], *made["hidden"], (1, self.k, 2)[number - 1]]
         outputs = widths[-1]
         table = {
-            "embedding": [made["embedding"]],
             "chart_affine": [made["embedding"], outputs * coordinates, outputs],
         }.get(made["conditioning"], [])
         layers = zip(widths[1:], widths[:-1], strict=True)
@@ -61,10 +61,11 @@ class Reader:
         answer: list[float] = DECODER["evaluate"](made, self.k, weights, point, chart)
         return answer
 
-    def chart(self, point: list[float]) -> int:
-        """The largest logit, of equal ones the first."""
+    def chart(self, point: list[float], closed: int = 0) -> int:
+        """The largest logit but for the last `closed`, of equal ones the first; 0 with a NaN."""
         logits = self.ask(2, point) if 2 in self.specs else [0.0]
-        return logits.index(max(logits))
+        largest: int = DECODER["largest"](logits[: self.k - closed])
+        return largest
 
     def uv(self, point: list[float], chart: int) -> list[float]:
         """The place in the asset's UV."""
@@ -74,8 +75,13 @@ class Reader:
         left, low, wide, high = self.uv_map
         return [u * wide + left, v * high + low]
 
-    def color(self, uv: list[float], chart: int) -> list[float]:
-        """RGBA."""
+    def color(self, point: list[float]) -> list[float]:
+        """RGBA: that of the likeliest chart that is no opening."""
+        chart = self.chart(point, self.openings)
+        return self.color_at(self.uv(point, chart), chart)
+
+    def color_at(self, uv: list[float], chart: int) -> list[float]:
+        """RGBA at a UV of a chart."""
         material = self.materials[self.chart_materials[chart]]
         used = material.get(9, {}).get(1)
         texels = None

@@ -312,7 +312,14 @@ def _tensors() -> Iterator[Malformed]:
     large = b"\x19\0\0\0\x3f\x05" + struct.pack("<6i", *[-(2**31)] * 6)
     overflow = b"\x19" + struct.pack("<f", 3e38) + b"\x03" + b"\x7f" * 6
     cases = {
-        "coding-reserved": (b"\0" + dense(6)[1:], "coding"),
+        "coding-reserved": (b"\x08" + dense(6)[1:], "coding"),
+        "wide-tag-cut": (b"\0", "coding"),
+        "wide-tag-reserved": (b"\0\0\0\x04", "coding"),
+        "wide-tag-short-enough": (b"\0\x06\0\x03", "coding"),
+        "wide-tag-coding-unknown": (b"\0\x08\0\0", "coding"),
+        "wide-tag-step-unknown": (b"\0\x01\x08\0\0\x03" + bytes(6), "step"),
+        "wide-tag-joined-dense": (b"\0\x01\0\x04", "joined"),
+        "wide-tag-joined-many": (b"\0\x06\0\x04", "joined"),
         "delta-init-without-step": (b"\x07\0" + dense(6)[1:], "step"),
         "joined-dense": (b"\x41" + dense(6)[1:], "joined"),
         "number-kind-reserved": (b"\x01\0" + bytes(12), "number kind"),

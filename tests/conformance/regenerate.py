@@ -12,38 +12,44 @@ from typing import Any
 
 import numpy as np
 
-from nispcodec.core.arrays import AnyArray, BoolArray, Float32Array
+from nispcodec.core.arrays import BoolArray, Float32Array
 from nispcodec.core.document import Frame
 from nispcodec.core.texture import decode_image
 from nispcodec.format import unpack
 from nispcodec.infer.evaluate import evaluate
 from nispcodec.model import NispModel
 from tests.conformance.features import features
+from tests.conformance.independent import Reader
 from tests.conformance.malformed import all_malformed
 
 HERE = Path(__file__).parent
 TOLERANCE = {"sdf": 1e-4, "uv": 1e-4, "color": 0.01, "logit_margin": 1e-3}
 POINTS = 8
-DIGITS = 8
+DIGITS = 9
+GRID = 1024
 
 
 def answers(data: bytes) -> dict[str, Any]:
-    """What the reference says about a file, at points where no rounding can turn the answer."""
-    document = unpack(data)
-    model = NispModel(document)
-    points = np.random.default_rng(7).uniform(-0.8, 0.8, (400, 3)).round(3).astype(np.float32)
-    points = points[_steady(model, points)][:POINTS]
-    found: dict[str, AnyArray] = {
-        "points": points,
-        "sdf": model.sdf(points, "normalized"),
-        "chart": model.charts(points, "normalized"),
-        "uv": model.uv(points, "normalized"),
-        "color": model.color(points, "normalized"),
+    """What the specification says about a file, in float64, at points that no rounding can turn.
+
+    Points are multiples of 1 / GRID, which every float holds.
+    """
+    reader, frame = Reader(data), unpack(data).frame
+    points = np.rint(np.random.default_rng(7).uniform(-0.8, 0.8, (400, 3)) * GRID) / GRID
+    points = points[_steady(NispModel(unpack(data)), points.astype(np.float32))][:POINTS]
+    charts = [reader.chart(point) for point in points.tolist()]
+    pairs = list(zip(points.tolist(), charts, strict=True))
+    found: dict[str, Any] = {
+        "points": points.tolist(),
+        "sdf": [reader.ask(1, point)[0] for point, _ in pairs],
+        "chart": charts,
+        "uv": [reader.uv(point, chart) for point, chart in pairs],
+        "color": [reader.color(point) for point, _ in pairs],
     }
-    if document.frame != Frame((0.0, 0.0, 0.0), 1.0):
-        world = document.frame.to_world(points)
-        found |= {"world_points": world, "world_sdf": model.sdf(world)}
-    return {name: value.tolist() for name, value in found.items()}
+    if frame != Frame((0.0, 0.0, 0.0), 1.0):
+        world = [distance * frame.radius for distance in found["sdf"]]
+        found |= {"world_points": frame.to_world(points).tolist(), "world_sdf": world}
+    return found
 
 
 def _steady(model: NispModel, points: Float32Array) -> BoolArray:

@@ -64,7 +64,7 @@ def test_inspect_accounts_for_every_byte() -> None:
 def test_overhead_of_a_one_material_asset() -> None:
     """As an encoder writes it, with what it measured: two maps under names of usual lengths."""
     charts = ChartTable(np.zeros(13, np.int32), np.ones(13, np.bool_), (-0.25, 0.125), (1.25, 0.75))
-    spec = NetworkSpec((32,) * 4, 2, conditioning="embedding", charts=13, embedding=4)
+    spec = NetworkSpec((32,) * 4, 2, conditioning="chart_affine", charts=13, embedding=4)
     document = varied(
         full(),
         frame=Frame((0.0, 0.25, 0.5), 1.5),
