@@ -17,9 +17,9 @@ SECTION = "MESH"
 _TOP = 1 << 24
 _FULL = (1 << 32) - 1
 LIMIT = 255
-RATES = tuple(int(65536 / (n + 1.6)) for n in range(LIMIT + 1))
+RATES = tuple(int(65536 / (n + 2)) for n in range(LIMIT + 1))
 LEARNING = 10
-START = 22000
+START = 20000
 
 
 class BinaryCoder:

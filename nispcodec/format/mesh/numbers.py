@@ -9,13 +9,13 @@ LONGEST = 24
 
 
 def signed(
-    coder: BinaryCoder, value: int, slot: int, expected: int, medium: int, special: int
+    coder: BinaryCoder, value: int, slot: int, expected: int, general: int, medium: int, special: int
 ) -> int:
     """An integer of up to 24 bits; `expected` is how long it should be, 0 to 24.
 
     slot: the first of 64 slots; medium, special: contexts. Raises FormatError for a longer one.
     """
-    length = _length(coder, abs(value).bit_length(), slot, expected, medium, special)
+    length = _length(coder, abs(value).bit_length(), slot, expected, general, medium, special)
     if length == 0:
         return 0
     relative = min(max(length - expected, -4), 4) + 4
@@ -31,20 +31,20 @@ def signed(
 
 
 def _length(
-    coder: BinaryCoder, length: int, slot: int, expected: int, medium: int, special: int
+    coder: BinaryCoder, length: int, slot: int, expected: int, general: int, medium: int, special: int
 ) -> int:
     found = expected
-    if coder.bit(length > found, slot + 3, 0, medium, special):
+    if coder.bit(length > found, slot + 3, general, medium, special):
         found += 1
         step = 0
-        while coder.bit(length > found, slot + 4 + step, 0, medium, special):
+        while coder.bit(length > found, slot + 4 + step, general, medium, special):
             found += 1
             step = min(step + 1, 15)
             if found > LONGEST:
                 raise FormatError(SECTION, "number", f"at most {LONGEST} bits", "more")
         return found
     step = 0
-    while found > 0 and coder.bit(length < found, slot + 20 + step, 0, medium, special):
+    while found > 0 and coder.bit(length < found, slot + 20 + step, general, medium, special):
         found -= 1
         step += 1
     return found
