@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from nispcodec.core import asset, network, slots
+from nispcodec.core import asset, mesh_part, network, slots
 from nispcodec.core.texture import sample_texture
 from nispcodec.format import constants, inspect, pack, steps, unpack
 from nispcodec.format.codings import frequency_model, registry
@@ -25,6 +25,7 @@ from tests.tiny import random_network
 NAMES = (
     vars(network)
     | vars(asset)
+    | vars(mesh_part)
     | vars(constants)
     | {"CODINGS": registry.CODINGS, "SLOTS": slots.SLOTS}
 )

@@ -1,0 +1,13 @@
+"""Which decision has which slot of the coder: numbers of the format."""
+
+from __future__ import annotations
+
+NEW, RIGHT, LEFT, SPLIT, BORDER, PAIR, FAR, BACK = range(8)
+HAS_COPIES, IS_COPY, SHEET, HAS_SEAMS, SEAM, HAS_CREASES, CREASE, BORDER_CREASE = range(8, 16)
+HAS_UV, MEMBER, FLIP, ONE_PLACE, MIRRORED, HAS_MATERIALS = range(16, 22)
+# Of numbers, two slots each.
+STEP, ORIGIN, UV_STEP, UV_ORIGIN, ROTATION, OFFSET, SCALE, UV_SCALE, UV_OFFSET = range(24, 42, 2)
+# Of integers, 64 slots each.
+STEPS, POSITION, NORMAL, POSITION_START, UV, UV_START = range(64, 448, 64)
+REPEATED, SEEN, BESIDE, DOWN = 700, 701, 702, 703
+RANK=640

@@ -1,0 +1,246 @@
+"""Texture coordinates, less what the faces beside them predict from positions and coordinates."""
+
+from __future__ import annotations
+
+from math import isqrt
+from typing import NamedTuple
+
+from nispcodec.core.errors import FormatError
+from nispcodec.format.mesh import slots
+from nispcodec.format.mesh.binary_coder import SECTION, BinaryCoder
+from nispcodec.format.mesh.numbers import signed
+from nispcodec.format.mesh.order import Hinges, visits
+from nispcodec.format.mesh.positions import Vector, context_of_size, frac
+
+Pair = tuple[int, int]
+FINE = 10
+"""Bits of a difference of positions: products of four stay below 2^53."""
+STEEP = 4
+"""How many times further than a face's third node one may lie that continues it."""
+
+
+class Guess(NamedTuple):
+    """Coordinates that one face expects of a node.
+
+    u, v     the coordinates, without the part across the edge unless `whole`
+    whole    whether the face over the edge said how coordinates go on across it
+    across   otherwise, the part across it as in a map that keeps angles and sides
+    """
+
+    u: int
+    v: int
+    whole: bool
+    across: Pair
+
+
+class _Texture:
+    """Coordinates that are known, of nodes at their places, and which lie beside which."""
+
+    def __init__(self, coder: BinaryCoder, places: list[Vector], bits: int) -> None:
+        self._coder, self._places, self._bits = coder, places, bits
+        self._top = (1 << bits) - 1
+        self._last = -1
+        self._flip = 0
+        self._hits = 0
+        self._known: dict[Pair, int] = {}
+        self._order: list[Pair] = []
+        self._beyond: dict[tuple[Pair, Pair], list[Pair]] = {}
+        self._beside: dict[Pair, dict[Pair, int]] = {}
+        self._far, self._wide = 1, 1
+        self.found: list[Pair] = [(0, 0)] * len(places)
+
+    def code(self, node: int, hinges: Hinges, near: int, wanted: Pair) -> None:
+        """The coordinates of one node."""
+        if hinges:
+            found = self._repeated(hinges, wanted)
+            if found is None:
+                found = self._continued(node, hinges, wanted)
+        elif near >= 0:
+            found = self._second(node, near, wanted)
+        else:
+            found = self._first(wanted)
+        self.found[node] = found
+        self._last = node
+        if found not in self._known:
+            self._known[found] = len(self._order)
+            self._order.append(found)
+        for a, b, _ in hinges:
+            self._note(self.found[a], self.found[b], found)
+            self._note(found, self.found[a], self.found[b])
+            self._note(self.found[b], found, self.found[a])
+        ends = {v for a, b, _ in hinges for v in (a, b)} | ({near} if near >= 0 else set())
+        for other in ends:
+            length = self._apart(node, other)
+            self._beside.setdefault(found, {})[self.found[other]] = length
+            self._beside.setdefault(self.found[other], {})[found] = length
+
+    def _apart(self, one: int, other: int) -> int:
+        d = _minus(self._places[one], self._places[other])
+        return isqrt(_dot(d, d))
+
+    def _note(self, a: Pair, b: Pair, third: Pair) -> None:
+        self._beyond.setdefault((a, b) if a < b else (b, a), []).append(third)
+
+    def _repeated(self, hinges: Hinges, wanted: Pair) -> Pair | None:
+        """Coordinates that an earlier face of another chart had beyond the same edge."""
+        votes: dict[Pair, int] = {}
+        for a, b, c in hinges:
+            ua, ub = self.found[a], self.found[b]
+            own = self.found[c] if c >= 0 else None
+            for third in self._beyond.get((ua, ub) if ua < ub else (ub, ua), ()):
+                if third != own:
+                    votes[third] = votes.get(third, 0) + 1
+        if not votes:
+            return None
+        best = max(votes, key=lambda pair: (votes[pair], pair))
+        hit = self._coder.bit(wanted == best, slots.REPEATED, 0, self._hits, min(votes[best], 3))
+        self._hits = (self._hits << 1 | hit) & 7
+        return best if hit else None
+
+    def _first(self, wanted: Pair) -> Pair:
+        if self._order:
+            hit = self._coder.bit(wanted in self._known, slots.SEEN, 0, 0, 0)
+            if hit:
+                at = self._coder.below(self._known.get(wanted, 0), len(self._order), "uv")
+                return self._order[at]
+        expected = self.found[self._last] if self._last >= 0 else (self._top >> 1, self._top >> 1)
+        return self._code(wanted, expected, 1 << self._bits >> 1, 5)
+
+    def _second(self, node: int, near: int, wanted: Pair) -> Pair:
+        start = self.found[near]
+        length = self._apart(node, near)
+        beside = self._beside.get(start, {})
+        if beside:
+            hit = self._coder.bit(wanted in beside, slots.BESIDE, 0, 0, 0)
+            if hit:
+                ranked = sorted(beside, key=lambda pair: (abs(beside[pair] - length), pair))
+                rank = ranked.index(wanted) if wanted in beside else 0
+                at = signed(self._coder, rank, slots.RANK, 0, 0, 0, 0)
+                if not 0 <= at < len(ranked):
+                    raise FormatError(SECTION, "uv rank", f"below {len(ranked)}", at)
+                return ranked[at]
+        size = min(self._wide * length // self._far, 4 << self._bits)
+        du = signed(self._coder, wanted[0] - start[0], slots.UV_START + 64, size.bit_length(), 0, frac(size), 0)
+        other = isqrt(max(size * size - du * du, 0))
+        down = self._coder.bit(wanted[1] < start[1], slots.DOWN, 0, 0, 0)
+        wants = abs(wanted[1] - start[1])
+        dv = other + signed(self._coder, wants - other, slots.UV_START + 128, (size >> 3).bit_length(), 0, min(8 * other // (size+1), 7), frac(size))
+        found = start[0] + du, start[1] + (-dv if down else dv)
+        for value in found:
+            if not 0 <= value <= self._top:
+                raise FormatError(SECTION, "uv", f"0 to {self._top}", value)
+        if length:
+            self._far = self._far - self._far // 4 + 16 * length
+            self._wide = self._wide - self._wide // 4 + 16 * isqrt(du * du + dv * dv)
+        return found
+
+    def _continued(self, node: int, hinges: Hinges, wanted: Pair) -> Pair:
+        guesses = [self._guess(node, *hinge) for hinge in hinges]
+        whole = [guess for guess in guesses if guess.whole]
+        expected = _mean(whole) if whole else self._turned(guesses, wanted)
+        size = sum(self._length(a, b) for a, b, _ in hinges) // len(hinges)
+        return self._code(wanted, expected, size, min(len(whole), 3))
+
+    def _length(self, a: int, b: int) -> int:
+        (ua, va), (ub, vb) = self.found[a], self.found[b]
+        return abs(ua - ub) + abs(va - vb)
+
+    def _turned(self, guesses: list[Guess], wanted: Pair) -> Pair:
+        """Without a face beyond: to either side of the edge, as the file says."""
+        left, right = _mean(guesses, 1), _mean(guesses, -1)
+        if left != right:
+            flip = _distance(wanted, right) < _distance(wanted, left)
+            self._flip = self._coder.bit(flip, slots.FLIP, 0, self._flip, 0)
+        return right if self._flip else left
+
+    def _guess(self, node: int, a: int, b: int, c: int) -> Guess:
+        """What the face of node, a and b expects; c is the node beyond the edge a b, or -1."""
+        origin = self._places[a]
+        (ua, va), (ub, vb) = self.found[a], self.found[b]
+        u, v = ub - ua, vb - va
+        others = (b, node, c) if c >= 0 else (b, node, a)
+        edge, here, beyond = _fine([_minus(self._places[each], origin) for each in others])
+        square = _dot(edge, edge)
+        if square == 0:
+            return Guess(ua, va, False, (0, 0))
+        part, height = _foot(edge, square, here)
+        pu, pv = ua + _over(u * part, square), va + _over(v * part, square)
+        if c >= 0:
+            part, other = _foot(edge, square, beyond)
+            if other * STEEP >= height and other:
+                uc, vc = self.found[c]
+                du = _over((_over(u * part, square) - uc + ua) * height, other)
+                dv = _over((_over(v * part, square) - vc + va) * height, other)
+                return Guess(pu + du, pv + dv, True, (0, 0))
+        return Guess(pu, pv, False, (_over(-v * height, square), _over(u * height, square)))
+
+    def _code(self, wanted: Pair, expected: Pair, size: int, sources: int) -> Pair:
+        length, fine = context_of_size(size)
+        slot = slots.UV_START if sources > 3 else slots.UV
+        before = 0
+        made = []
+        for axis in range(2):
+            guess = min(max(expected[axis], 0), self._top)
+            special = (before * 6 + sources) * 2 + axis
+            rest = signed(
+                self._coder, wanted[axis] - guess, slot, length, sources, fine * 6 + sources, special
+            )
+            if not 0 <= guess + rest <= self._top:
+                raise FormatError(SECTION, "uv", f"0 to {self._top}", guess + rest)
+            made.append(guess + rest)
+            before = min(max(abs(rest).bit_length() - length, -3), 3) + 4
+        return made[0], made[1]
+
+
+def code(
+    coder: BinaryCoder,
+    corners: list[int],
+    twin: list[int],
+    places: list[Vector],
+    bits: int,
+    given: list[Pair] | None,
+) -> list[Pair]:
+    """The coordinates of all nodes, of `bits` bits each. Raises FormatError.
+
+    corners, twin: the surface (3 m), cut at its seams; places: where each node stands.
+    """
+    texture = _Texture(coder, places, bits)
+    for node, hinges, near in visits(corners, twin, [False] * len(places)):
+        texture.code(node, hinges, near, given[node] if given is not None else (0, 0))
+    return texture.found
+
+
+def _mean(guesses: list[Guess], side: int = 0) -> Pair:
+    u = sum(guess.u + side * guess.across[0] for guess in guesses)
+    v = sum(guess.v + side * guess.across[1] for guess in guesses)
+    return u // len(guesses), v // len(guesses)
+
+
+def _distance(one: Pair, other: Pair) -> int:
+    return abs(one[0] - other[0]) + abs(one[1] - other[1])
+
+
+def _minus(one: Vector, other: Vector) -> Vector:
+    return one[0] - other[0], one[1] - other[1], one[2] - other[2]
+
+
+def _dot(one: Vector, other: Vector) -> int:
+    return one[0] * other[0] + one[1] * other[1] + one[2] * other[2]
+
+
+def _fine(vectors: list[Vector]) -> list[Vector]:
+    """All without as many of their last bits that FINE are left of the largest number."""
+    longest = max(abs(number) for vector in vectors for number in vector).bit_length()
+    shift = max(longest - FINE, 0)
+    return [(x >> shift, y >> shift, z >> shift) for x, y, z in vectors]
+
+
+def _foot(edge: Vector, square: int, point: Vector) -> tuple[int, int]:
+    """Of a point, times the edge's length: its part along the edge, its height above it."""
+    part = _dot(edge, point)
+    return part, isqrt(max(square * _dot(point, point) - part * part, 0))
+
+
+def _over(number: int, divisor: int) -> int:
+    """The nearest integer to a quotient, of two the higher."""
+    return (2 * number + divisor) // (2 * divisor)
