@@ -19,6 +19,10 @@ RULES: dict[str, tuple[set[str], set[str]]] = {
     "io": ({"numpy", "PIL"}, {"core"}),
     "geometry": ({"numpy", "scipy", "igl"}, {"core"}),
     "dataset": ({"numpy", "scipy"}, {"core", "geometry"}),
+    "simplify": (
+        {"numpy", "scipy", "igl", "meshoptimizer"},
+        {"core", "geometry", "metrics"},
+    ),
     "train": ({"numpy", "scipy", "threadpoolctl", "torch"}, {"core", "dataset"}),
     "format": ({"numpy", "msgpack", "zstandard"}, {"core"}),
     "infer": ({"numpy", "threadpoolctl"}, {"core"}),
@@ -111,6 +115,8 @@ STRUCTURAL = {
     "nispcodec/extract/neighbors.py PAIRS",
     "nispcodec/geometry/z_order.py APART",
     "nispcodec/geometry/z_order.py BITS",
+    "nispcodec/simplify/closest.py FLAT",
+    "nispcodec/simplify/collapse.py PRUNE",
 }
 
 
@@ -140,7 +146,9 @@ def numeric_constants(path: Path) -> Iterator[str]:
             yield from (part.id for part in names if isinstance(part, ast.Name))
 
 
-@pytest.mark.parametrize("package", ["geometry", "dataset", "train", "encode", "extract"])
+@pytest.mark.parametrize(
+    "package", ["geometry", "dataset", "simplify", "train", "encode", "extract"]
+)
 def test_tuned_numbers_are_in_configs(package: str) -> None:
     found = {
         f"{path.relative_to(ROOT)} {name}"
@@ -217,6 +225,7 @@ TESTED_ELSEWHERE = {
     "format/constants.py": "format/test_spec.py",
     "extract/config.py": "test_rules.py",
     "geometry/config.py": "test_rules.py",
+    "simplify/config.py": "test_rules.py",
     "train/config.py": "test_rules.py",
     # Steps of an encode.
     "dataset/recipes.py": "dataset/test_sampler.py",
