@@ -57,6 +57,13 @@ def texture_formats() -> Iterable[str]:
     return TEXTURE_FORMATS
 
 
+def geometries() -> Iterable[str]:
+    """What an asset may be held as."""
+    from nispcodec.encode.config import GEOMETRIES
+
+    return GEOMETRIES
+
+
 def pruning_strategies() -> Iterable[str]:
     """How weights are chosen that are pruned."""
     from nispcodec.train.prune import STRATEGIES

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from .choices import LibraryChoice, engines, presets, texture_formats
+from .choices import LibraryChoice, engines, geometries, presets, texture_formats
 from .errors import warn
 from .lines import duration
 from .outputs import OutputFile, nisp_suffix, output_option, refuse_overwriting_others
@@ -41,6 +41,13 @@ LARGEST_NETWORKS = 1_000_000
     default="balanced",
     show_default=True,
     help="How long to learn: fast, balanced or best; paper is the published method.",
+)
+@click.option(
+    "--geometry",
+    type=LibraryChoice(geometries),
+    default="auto",
+    show_default=True,
+    help="As a field (networks) or as a mesh (triangles); auto takes what is smaller.",
 )
 @click.option(
     "--target-size",

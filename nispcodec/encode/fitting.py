@@ -33,10 +33,12 @@ def fit(
     training: TrainConfig,
     engine: Engine,
     document: Callable[[Mapping[str, Network]], Document],
+    wanted: Callable[[float, float], bool],
     progress: Listener,
 ) -> Mapping[str, Network]:
     """The networks: the published ones, or sine networks as large as the preset or target asks.
 
+    None at all where a preset's, whose bytes and probe error are told to `wanted`, are not.
     Raises FitError when a network does not converge.
     """
     threads = config.threads or cores()
@@ -55,7 +57,7 @@ def fit(
         return fit_to_error(context, config.target_error)
     if config.target_size is not None:
         return fit_to_size(context, config.target_size, document)
-    return fit_with_preset(context)
+    return fit_with_preset(context, wanted)
 
 
 def asset_problem(analysis: Analysis, sets: TrainingSets, training: TrainConfig) -> AssetProblem:

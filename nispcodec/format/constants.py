@@ -32,6 +32,7 @@ MEASURES = (
     "chart_accuracy",
     "uv_error_median",
     "uv_error_mean",
+    "other_form_bytes",
 )
 PRESETS = ("balanced", "paper", "fast", "best")
 STEPS = ("byte", "float16", "float32", "same", "rows1", "rows2", "rows3")

@@ -92,6 +92,13 @@ class Simplifier:
         errors = self.original.errors(mesh_of(part))
         return Candidate(part, bits, uv_bits, errors, self.coded(part))
 
+    def balanced(self, faces: int) -> Candidate:
+        """About so many faces, with bits whose rounding suits the error that is there before."""
+        before = self.original.errors(self.fitted(faces).mesh())
+        bits = self.bits_for(max(before.distance, self.config.tolerance))
+        uv_bits = self.uv_bits_for(max(before.uv_median, self.config.uv_tolerance))
+        return self.candidate(faces, bits, uv_bits)
+
     def bits_for(self, distance: float) -> int:
         """Bits a coordinate whose rounding is the best part of a mean distance."""
         positions = self.source.triangles.positions
@@ -111,7 +118,7 @@ def ladder(simplifier: Simplifier) -> list[Candidate]:
     config = simplifier.config
     count = max(2, round(config.rungs * np.log2(max(everything / config.fewest, 2)) / 8))
     wanted = np.geomspace(min(config.fewest, everything), everything, count)
-    return [_balanced(simplifier, round(float(faces))) for faces in wanted]
+    return [simplifier.balanced(round(float(faces))) for faces in wanted]
 
 
 def best_for(simplifier: Simplifier, distance: float, uv: float) -> Candidate | None:
@@ -146,15 +153,6 @@ def kept_whole(simplifier: Simplifier, distance: float, uv: float) -> Candidate 
         bits, uv_bits = bits + (far or not helps), uv_bits + (wrong and helps)
         found = finer if helps and not far else simplifier.candidate(everything, bits, uv_bits)
     return found
-
-
-def _balanced(simplifier: Simplifier, faces: int) -> Candidate:
-    """About so many faces, with bits whose rounding suits the error that is there before."""
-    before = simplifier.original.errors(simplifier.fitted(faces).mesh())
-    config = simplifier.config
-    bits = simplifier.bits_for(max(before.distance, config.tolerance))
-    uv_bits = simplifier.uv_bits_for(max(before.uv_median, config.uv_tolerance))
-    return simplifier.candidate(faces, bits, uv_bits)
 
 
 def _approach(

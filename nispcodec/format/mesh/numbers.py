@@ -9,7 +9,13 @@ LONGEST = 24
 
 
 def signed(
-    coder: BinaryCoder, value: int, slot: int, expected: int, general: int, medium: int, special: int
+    coder: BinaryCoder,
+    value: int,
+    slot: int,
+    expected: int,
+    general: int,
+    medium: int,
+    special: int,
 ) -> int:
     """An integer of up to 24 bits; `expected` is how long it should be, 0 to 24.
 
@@ -31,7 +37,13 @@ def signed(
 
 
 def _length(
-    coder: BinaryCoder, length: int, slot: int, expected: int, general: int, medium: int, special: int
+    coder: BinaryCoder,
+    length: int,
+    slot: int,
+    expected: int,
+    general: int,
+    medium: int,
+    special: int,
 ) -> int:
     found = expected
     if coder.bit(length > found, slot + 3, general, medium, special):

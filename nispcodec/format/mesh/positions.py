@@ -63,8 +63,15 @@ class _Positions:
             scale = 3 * extents[axis] + widest
             length, fine = (scale >> 5).bit_length(), frac(scale)
             share = min(4 * sizes[axis] // sizes[last], 3) if sizes[last] else 3
-            rest = signed(self._coder, wanted[axis] - guess, slots.POSITION, length, sources,
-                fine * 4 + sources, (before * 16 + rought)*4 +sources)
+            rest = signed(
+                self._coder,
+                wanted[axis] - guess,
+                slots.POSITION,
+                length,
+                sources,
+                fine * 4 + sources,
+                (before * 16 + rought) * 4 + sources,
+            )
             made[axis] = guess + rest
             tilt += normal[axis] * (made[axis] - expected[axis])
             bits = min(max(abs(rest).bit_length() - length, -3), 3) + 4
@@ -75,8 +82,15 @@ class _Positions:
         scale = 3 * extents[last] + widest
         length, fine = (scale >> 6).bit_length(), frac(scale)
         share = min(4 * (sum(sizes) - sizes[last]) // sizes[last], 7) if sizes[last] else 3
-        rest = signed(self._coder, wanted[last] - guess, slots.NORMAL, length, sources,
-            (flat * 4 + sources) * 8 + before, ((sources * 16 + rough)) * 8 + before)
+        rest = signed(
+            self._coder,
+            wanted[last] - guess,
+            slots.NORMAL,
+            length,
+            sources,
+            (flat * 4 + sources) * 8 + before,
+            (sources * 16 + rough) * 8 + before,
+        )
         made[last] = guess + rest
         self._rough[vertex] = min(max(abs(rest).bit_length() - length, -3), 6) + 4
         for axis in range(3):
@@ -122,7 +136,10 @@ class _Positions:
                 beyond = sum(found[c][axis] for _, _, c in full)
                 value16 += _over(reach * (value * len(full) - 16 * beyond), 16 * len(full))
             if ends:
-                value16 += _over(drawn * (16 * sum(found[v][axis] for v in ends) - value * len(ends)), 16 * len(ends))
+                value16 += _over(
+                    drawn * (16 * sum(found[v][axis] for v in ends) - value * len(ends)),
+                    16 * len(ends),
+                )
             expected.append((value16 + 8) >> 4)
         return expected[0], expected[1], expected[2]
 
@@ -134,7 +151,13 @@ class _Positions:
             guess = min(max(expected[axis], 0), self._top)
             special = (before * 6 + sources) * 3 + axis
             rest = signed(
-                self._coder, wanted[axis] - guess, slots.POSITION_START, length, sources, fine * 6 + sources, special
+                self._coder,
+                wanted[axis] - guess,
+                slots.POSITION_START,
+                length,
+                sources,
+                fine * 6 + sources,
+                special,
             )
             if not 0 <= guess + rest <= self._top:
                 raise FormatError(SECTION, "position", f"0 to {self._top}", guess + rest)

@@ -120,11 +120,27 @@ class _Texture:
                     raise FormatError(SECTION, "uv rank", f"below {len(ranked)}", at)
                 return ranked[at]
         size = min(self._wide * length // self._far, 4 << self._bits)
-        du = signed(self._coder, wanted[0] - start[0], slots.UV_START + 64, size.bit_length(), 0, frac(size), 0)
+        du = signed(
+            self._coder,
+            wanted[0] - start[0],
+            slots.UV_START + 64,
+            size.bit_length(),
+            0,
+            frac(size),
+            0,
+        )
         other = isqrt(max(size * size - du * du, 0))
         down = self._coder.bit(wanted[1] < start[1], slots.DOWN, 0, 0, 0)
         wants = abs(wanted[1] - start[1])
-        dv = other + signed(self._coder, wants - other, slots.UV_START + 128, (size >> 3).bit_length(), 0, min(8 * other // (size+1), 7), frac(size))
+        dv = other + signed(
+            self._coder,
+            wants - other,
+            slots.UV_START + 128,
+            (size >> 3).bit_length(),
+            0,
+            min(8 * other // (size + 1), 7),
+            frac(size),
+        )
         found = start[0] + du, start[1] + (-dv if down else dv)
         for value in found:
             if not 0 <= value <= self._top:
@@ -183,7 +199,13 @@ class _Texture:
             guess = min(max(expected[axis], 0), self._top)
             special = (before * 6 + sources) * 2 + axis
             rest = signed(
-                self._coder, wanted[axis] - guess, slot, length, sources, fine * 6 + sources, special
+                self._coder,
+                wanted[axis] - guess,
+                slot,
+                length,
+                sources,
+                fine * 6 + sources,
+                special,
             )
             if not 0 <= guess + rest <= self._top:
                 raise FormatError(SECTION, "uv", f"0 to {self._top}", guess + rest)
