@@ -46,9 +46,9 @@ def test_bodies_that_overlap_are_one_inside() -> None:
     points = scattered(5000)
     first, second = part_of(cube(0.8, (0.1, 0, 0))), part_of(cube(0.8, (-0.1, 0, 0)))
     sdf = PlacedMeshes((first, second)).sdf(points)
-    inside = (np.abs(points) < [0.5, 0.4, 0.4]).all(axis=1)
+    inside = np.all(np.abs(points) < [0.5, 0.4, 0.4], axis=1)
     clear = np.flatnonzero(np.abs(sdf) > 1e-4)
-    np.testing.assert_array_equal((sdf < 0)[clear], inside[clear])
+    np.testing.assert_array_equal(sdf[clear] < 0, inside[clear])
 
 
 def test_a_body_may_lack_faces_where_another_covers_them() -> None:
