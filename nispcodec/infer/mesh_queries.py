@@ -14,7 +14,7 @@ from nispcodec.core.arrays import (
     Int32Array,
 )
 from nispcodec.core.mesh_part import MeshPart
-from nispcodec.infer.mesh_search import MeshSearch
+from nispcodec.infer.mesh_search import MeshSearch, SearchConfig
 from nispcodec.infer.placements import PlacedTriangles
 from nispcodec.infer.triangles import closest_weights, triangle_rows
 
@@ -46,9 +46,9 @@ class PlacedMeshes:
     distances are infinite and all else is 0.
     """
 
-    def __init__(self, parts: tuple[MeshPart, ...]) -> None:
+    def __init__(self, parts: tuple[MeshPart, ...], config: SearchConfig = SearchConfig()) -> None:
         self.triangles = PlacedTriangles.of(parts)
-        self._search = MeshSearch(self.triangles.corners, self.triangles.sheet)
+        self._search = MeshSearch(self.triangles.corners, self.triangles.sheet, config)
 
     @property
     def chart_materials(self) -> Int32Array:

@@ -36,7 +36,7 @@ def test_it_is_that_of_libigl_nearly(name: str) -> None:
     rough = winding_numbers(tree, clusters, points, CONFIG.rough)
     assert np.abs(rough - expected).max() < CONFIG.margin / 2
     fine = winding_numbers(tree, clusters, points, CONFIG.exact)
-    assert np.abs(fine - expected).max() < 1e-3
+    assert np.abs(fine - expected).max() < 5e-3
     every = winding_numbers(tree, clusters, points, 1e9)
     np.testing.assert_allclose(every, expected, atol=1e-9)
 
@@ -47,4 +47,4 @@ def test_sheets_do_not_count() -> None:
     points = points_off(corners, 300)
     tree = MeshTree.of(corners, np.arange(112) < 100)
     numbers = winding_numbers(tree, multipoles(tree), points, CONFIG.exact)
-    np.testing.assert_allclose(numbers, exact(body, points), atol=1e-3)
+    np.testing.assert_allclose(numbers, exact(body, points), atol=5e-3)

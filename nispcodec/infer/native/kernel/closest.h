@@ -49,20 +49,25 @@ class ClosestTriangle {
     Found found_{INT32_MAX, INFINITY};
     double reach_ = INFINITY;  // found_.squared and what rounding may have taken
     int waiting_ = 0;
-    Waiting stack_[MOST_WAITING];
+    Waiting stack_[MOST_WAITING + 1];
 
-    // Lets its children wait whose boxes are in reach, the nearest on top.
+    // Lets its children wait whose boxes are in reach, the nearest on top. Without branches, as no
+    // processor foretells which they are.
     void look_into(Place node) {
         const double* boxes = tree_.boxes[node.level] + int64_t(node.index) * BOX_ROWS * LANES;
         double bounds[LANES];
         for (int lane = 0; lane < LANES; lane += DOUBLES) store(bounds + lane, box_distances(boxes + lane));
-        const int first = waiting_;
+        int top = waiting_, nearest = top;
+        double least_bound = reach_;
         for (int child = 0; child < LANES; child++) {
-            if (!(bounds[child] < reach_)) continue;
-            int place = waiting_++;
-            for (; place > first && stack_[place - 1].bound < bounds[child]; place--) stack_[place] = stack_[place - 1];
-            stack_[place] = {bounds[child], node.child(child)};
+            const double bound = bounds[child];
+            stack_[top] = {bound, node.child(child)};
+            nearest = bound < least_bound ? top : nearest;
+            least_bound = std::min(bound, least_bound);
+            top += bound < reach_;
         }
+        if (top > waiting_) std::swap(stack_[nearest], stack_[top - 1]);
+        waiting_ = top;
     }
 
     Doubles box_distances(const double* boxes) const {
@@ -77,6 +82,9 @@ class ClosestTriangle {
         const double* rows = tree_.triangles + int64_t(leaf) * TRIANGLE_ROWS * LANES;
         double squared[LANES];
         for (int lane = 0; lane < LANES; lane += DOUBLES) store(squared + lane, squared_distances(rows + lane));
+        double nearest = squared[0];
+        for (int lane = 1; lane < LANES; lane++) nearest = std::min(nearest, squared[lane]);
+        if (nearest > found_.squared) return;
         const int32_t* faces = tree_.faces + int64_t(leaf) * LANES;
         for (int lane = 0; lane < LANES; lane++) {
             const bool nearer = squared[lane] < found_.squared;
@@ -88,32 +96,30 @@ class ClosestTriangle {
     }
 
     Doubles squared_distances(const double* rows) const {
-        const auto a = load_three<Doubles>(rows), b = load_three<Doubles>(rows + 3 * LANES),
-                   c = load_three<Doubles>(rows + 6 * LANES);
+        const auto a = load_three<Doubles>(rows) - point_, b = load_three<Doubles>(rows + 3 * LANES) - point_,
+                   c = load_three<Doubles>(rows + 6 * LANES) - point_;
+        const Doubles aa = a.dot(a), bb = b.dot(b), cc = c.dot(c);
         const double* inverse = rows + 9 * LANES;
-        const Doubles edges = least(least(to_edge(a, b, load<Doubles>(inverse)), to_edge(b, c, load<Doubles>(inverse + LANES))),
-                                    to_edge(c, a, load<Doubles>(inverse + 2 * LANES)));
-        const auto way = point_ - a;
-        const Doubles v = way.dot(load_three<Doubles>(rows + 12 * LANES)), w = way.dot(load_three<Doubles>(rows + 15 * LANES));
-        const auto off = way - (b - a) * v - (c - a) * w;
+        const Doubles edges = least(least(to_edge(a, b, aa, bb, load<Doubles>(inverse)),
+                                          to_edge(b, c, bb, cc, load<Doubles>(inverse + LANES))),
+                                    to_edge(c, a, cc, aa, load<Doubles>(inverse + 2 * LANES)));
+        const Doubles v = -a.dot(load_three<Doubles>(rows + 12 * LANES)), w = -a.dot(load_three<Doubles>(rows + 15 * LANES));
+        const auto off = a + (b - a) * v + (c - a) * w;
         const Doubles none = {}, inside = off.dot(off);
         const auto over = (v > none) & (w > none) & (v + w < none + 1.0);
         return over ? least(edges, inside) : edges;
     }
 
-    Doubles to_edge(const Three<Doubles>& start, const Three<Doubles>& end, Doubles inverse) const {
-        const auto middle = (start + end) * 0.5, half = (end - start) * 0.5;
+    // Of an edge whose ends are as far off the point as `start` and `end`.
+    static Doubles to_edge(const Three<Doubles>& start, const Three<Doubles>& end, Doubles at_start, Doubles at_end,
+                           Doubles inverse) {
+        const auto both = start + end, edge = end - start;
         const Doubles one = Doubles{} + 1.0;
-        const Doubles along = least(greatest((point_ - middle).dot(half) * inverse, -one), one);
-        const auto between = middle + half * along;
-        const auto at_end = along >= one, at_start = along <= -one;
-        const Three<Doubles> closest = {
-            at_end ? end.x : (at_start ? start.x : between.x),
-            at_end ? end.y : (at_start ? start.y : between.y),
-            at_end ? end.z : (at_start ? start.z : between.z),
-        };
-        const auto off = point_ - closest;
-        return off.dot(off);
+        const Doubles along = least(greatest(-(both.dot(edge) * inverse), -one), one);
+        const auto off = both + edge * along;
+        Doubles squared = off.dot(off) * 0.25;
+        squared = along <= -one ? at_start : squared;
+        return along >= one ? at_end : squared;
     }
 };
 

@@ -28,17 +28,24 @@ class Winding {
     const Three<WideDoubles> point_;
     float squared_radii_ = 0;
     int waiting_ = 0;
-    Place stack_[MOST_WAITING];
+    Place stack_[MOST_WAITING + 1];
 
-    // The solid angles of those of FLOATS children that are far; the others wait.
+    // The solid angles of those of FLOATS children that are far; the others wait. Without branches, as
+    // no processor foretells which they are.
     Floats look_into(Place node, int first) {
         const float* rows = tree_.clusters[node.level] + int64_t(node.index) * CLUSTER_ROWS * LANES + first;
         const Three<Floats> point = {rounded(point_.x), rounded(point_.y), rounded(point_.z)};
         const auto way = load_three<Floats>(rows) - point;
         const Floats squared = way.dot(way);
         const auto far = squared > load<Floats>(rows + 3 * LANES) * squared_radii_;
-        for (int lane = 0; lane < FLOATS; lane++)
-            if (!far[lane]) stack_[waiting_++] = node.child(first + lane);
+        int32_t is_far[FLOATS];
+        store(is_far, far);
+        int top = waiting_;
+        for (int lane = 0; lane < FLOATS; lane++) {
+            stack_[top] = node.child(first + lane);
+            top += is_far[lane] == 0;
+        }
+        waiting_ = top;
         return far ? far_angles(rows, way, squared) : Floats{};
     }
 
