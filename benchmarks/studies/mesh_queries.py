@@ -122,7 +122,7 @@ def torus_faces() -> Int32Array:
     halves = [
         np.stack(each, axis=2).reshape(-1, 3) for each in ((here, on, both), (here, both, up))
     ]
-    return np.concatenate(halves)
+    return np.concatenate(halves).reshape(-1, 3)
 
 
 if __name__ == "__main__":

@@ -16,6 +16,7 @@ from nispcodec.core.arrays import (
 from nispcodec.core.mesh_part import MeshPart
 from nispcodec.infer.mesh_search import MeshSearch, SearchConfig
 from nispcodec.infer.placements import PlacedTriangles
+from nispcodec.infer.surface_normals import SurfaceNormals
 from nispcodec.infer.triangles import closest_weights, triangle_rows
 
 ON_SURFACE = 1e-6
@@ -49,6 +50,7 @@ class PlacedMeshes:
     def __init__(self, parts: tuple[MeshPart, ...], config: SearchConfig = SearchConfig()) -> None:
         self.triangles = PlacedTriangles.of(parts)
         self._search = MeshSearch(self.triangles.corners, self.triangles.sheet, config)
+        self._normals = SurfaceNormals(self.triangles.corners)
 
     @property
     def chart_materials(self) -> Int32Array:
@@ -63,7 +65,7 @@ class PlacedMeshes:
     @property
     def face_normals(self) -> Float64Array:
         """(f, 3): unit, as the corners turn; 0 for a triangle without area."""
-        return self._search.face_normals
+        return self._normals.faces
 
     def closest(self, points: FloatArray) -> Closest:
         """The closest point to each."""
@@ -87,23 +89,30 @@ class PlacedMeshes:
         return distances
 
     def normals(self, points: FloatArray) -> Float32Array:
-        """(n, 3) unit gradient of the distance; on the surface the face's normal, outwards."""
+        """(n, 3) unit gradient of the distance; on the surface its normal, outwards.
+
+        On edges and at corners that is the mean of their faces'. It is 0 without a triangle, and
+        on one without area.
+        """
         found = self.closest(points)
         away = points - found.point
         units = away / np.maximum(found.distance, np.finfo(np.float64).tiny)[:, None]
         units[self._search.inside(points)] *= -1
         near = np.flatnonzero(found.distance < ON_SURFACE)
-        units[near] = self._outwards(found.point[near], found.face[near])
+        if len(near):
+            normals = self._normals.at(found.face[near], found.barycentric[near])
+            units[near] = self._outwards(found.point[near], normals)
         return units.astype(np.float32)
 
-    def _outwards(self, points: Float64Array, faces: Int32Array) -> Float64Array:
-        """Normals of faces at points on them, turned where inside is before them, not behind."""
-        normals = self.face_normals[faces]
+    def _outwards(self, points: Float64Array, normals: Float64Array) -> Float64Array:
+        """Normals (n, 3) at points on the surface, turned where inside is before them, not behind.
+
+        So it does not matter which way the faces of a body look.
+        """
         before, behind = (
             self._search.inside(points + side * ON_SURFACE * normals) for side in (1, -1)
         )
-        normals[before & ~behind] *= -1
-        return normals
+        return np.where((before & ~behind)[:, None], -normals, normals)
 
     def charts(self, points: FloatArray) -> Int32Array:
         """(n,) int32: the chart of the closest triangle."""

@@ -50,7 +50,6 @@ class MeshSearch:
         self._config = config
         self._solid = bool((~sheet).any())
         self._engine = _engine(corners, sheet, config) if len(corners) else None
-        self.face_normals = _unit_normals(corners)
 
     def closest(self, points: FloatArray) -> tuple[Int32Array, Float64Array]:
         """The closest face (n,) and its squared distance (n,); 0 and infinity without triangles."""
@@ -109,11 +108,3 @@ def _engine(corners: Float64Array, sheet: BoolArray, config: SearchConfig) -> _E
 
 def _exact(points: FloatArray) -> Float64Array:
     return np.ascontiguousarray(points, np.float64)
-
-
-def _unit_normals(corners: Float64Array) -> Float64Array:
-    """(f, 3) of triangles (f, 3, 3); 0 where there is no area."""
-    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-    lengths = np.linalg.norm(normals, axis=1, keepdims=True)
-    units: Float64Array = np.divide(normals, lengths, out=np.zeros_like(normals), where=lengths > 0)
-    return units
