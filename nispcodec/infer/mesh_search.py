@@ -39,7 +39,7 @@ class SearchConfig:
 
 
 class MeshSearch:
-    """Of triangles (f, 3, 3) float64, any f; those of sheets (f,) bool have no inside.
+    """Triangles (f, 3, 3) float64, any f, to be asked; those of sheets (f,) bool have no inside.
 
     Points (n, 3) are float32 or float64, in the triangles' frame.
     """

@@ -15,7 +15,7 @@ TINY = 1e-10
 
 
 class SurfaceNormals:
-    """Of triangles (f, 3, 3), which are one surface where their corners are in the same place.
+    """Normals of triangles (f, 3, 3), one surface where their corners are in the same place.
 
     faces  (f, 3): unit, as the corners turn; 0 for a triangle without area
     """

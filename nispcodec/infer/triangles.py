@@ -1,4 +1,4 @@
-"""What a point is to a triangle: how far its closest point is, and how large it looks.
+"""A triangle as seen from a point: where it is closest, how far that is, how large it looks.
 
 A triangle is a column of ROWS numbers, so that many are computed at a time. Whatever two triangles
 share, a corner or an edge, gives both the same distance to the last bit: which of them a search
@@ -39,7 +39,7 @@ def _inverse(values: Float64Array) -> Float64Array:
 
 
 def dot(a: Float64Array, b: Float64Array) -> Float64Array:
-    """Of vectors along the first axis, (3, ...); summed in the order that the kernel has too."""
+    """Product of vectors along the first axis, (3, ...); summed in the order of the kernel."""
     product: Float64Array = a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
     return product
 
