@@ -11,7 +11,9 @@ from nispcodec.core.arrays import (
     Float32Array,
     Float64Array,
     FloatArray,
+    IndexArray,
     Int32Array,
+    IntArray,
 )
 from nispcodec.core.mesh_part import MeshPart
 from nispcodec.infer.mesh_search import MeshSearch, SearchConfig
@@ -44,11 +46,14 @@ class PlacedMeshes:
 
     Points (n, 3), any n, are float32 or float64, finite, in the normalized frame. Work is done in
     blocks on every core, so memory is bounded beyond input and output. Without any triangle
-    distances are infinite and all else is 0.
+    distances are infinite and all else is 0. Raises FormatError for more copies of triangles than
+    can be held, or copies a million radii away.
     """
 
     def __init__(self, parts: tuple[MeshPart, ...], config: SearchConfig = SearchConfig()) -> None:
         self.triangles = PlacedTriangles.of(parts)
+        self._config = config
+        self._charts: dict[int, tuple[IndexArray, MeshSearch]] = {}
         self._search = MeshSearch(self.triangles.corners, self.triangles.sheet, config)
         self._normals = SurfaceNormals(self.triangles.corners)
 
@@ -67,15 +72,41 @@ class PlacedMeshes:
         """(f, 3): unit, as the corners turn; 0 for a triangle without area."""
         return self._normals.faces
 
-    def closest(self, points: FloatArray) -> Closest:
-        """The closest point to each."""
+    def closest(self, points: FloatArray, charts: IntArray | None = None) -> Closest:
+        """The closest point to each; with charts (n,) the closest on the chart of each.
+
+        Where a chart has no triangle the distance is infinite, and all else as without charts.
+        """
         faces, squared = self._search.closest(points)
-        corners = self.triangles.corners[faces] if len(self.triangles.corners) else None
-        if corners is None:
+        if charts is not None:
+            self._move_to_charts(points, charts, faces, squared)
+        if not len(self.triangles.corners):
             nowhere = np.zeros((len(points), 3))
             return Closest(np.sqrt(squared), faces, nowhere, nowhere.copy())
+        corners = self.triangles.corners[faces]
         weights = closest_weights(triangle_rows(corners), points.T.astype(np.float64)).T
         return Closest(np.sqrt(squared), faces, weights, _mixed(weights, corners))
+
+    def _move_to_charts(
+        self, points: FloatArray, charts: IntArray, faces: Int32Array, squared: Float64Array
+    ) -> None:
+        """Change the faces (n,) and squared distances (n,) of points whose chart is another."""
+        own = self.triangles.charts[faces] if len(self.triangles.charts) else charts
+        elsewhere = np.flatnonzero(own != charts)
+        for chart in np.unique(charts[elsewhere]).tolist():
+            rows = elsewhere[charts[elsewhere] == chart]
+            members, search = self._chart(chart)
+            found, squared[rows] = search.closest(points[rows])
+            if len(members):
+                faces[rows] = members[found]
+
+    def _chart(self, chart: int) -> tuple[IndexArray, MeshSearch]:
+        """The faces of a chart and a search of them alone, which is kept."""
+        if chart not in self._charts:
+            members = np.flatnonzero(self.triangles.charts == chart)
+            corners, sheet = self.triangles.corners[members], self.triangles.sheet[members]
+            self._charts[chart] = members, MeshSearch(corners, sheet, self._config)
+        return self._charts[chart]
 
     def sdf(self, points: FloatArray) -> Float32Array:
         """(n,) distances, negative inside: where the winding number is over 1/2 or under -1/2.
@@ -120,9 +151,12 @@ class PlacedMeshes:
             return np.zeros(len(points), np.int32)
         return self.triangles.charts[self._search.closest(points)[0]]
 
-    def uv(self, points: FloatArray) -> Float32Array:
-        """(n, 2) float32: the asset's UV at the closest point; (0, 0) on a chart without."""
-        found = self.closest(points)
+    def uv(self, points: FloatArray, charts: IntArray | None = None) -> Float32Array:
+        """(n, 2) float32: the asset's UV at the closest point; with charts (n,) on these.
+
+        (0, 0) on a chart without UV.
+        """
+        found = self.closest(points, charts)
         if not len(self.triangles.uvs):
             return np.zeros((len(points), 2), np.float32)
         return _mixed(found.barycentric, self.triangles.uvs[found.face]).astype(np.float32)

@@ -6,7 +6,9 @@ import numpy as np
 import pytest
 
 from nispcodec.core.arrays import Float64Array
+from nispcodec.core.errors import FormatError
 from nispcodec.core.mesh_part import Placement
+from nispcodec.infer import placements
 from nispcodec.infer.mesh_queries import PlacedMeshes
 from nispcodec.infer.placements import PlacedTriangles, placed_points, rotation_matrix
 from tests.infer.parts import part_of, points_about, soup, sphere
@@ -21,12 +23,12 @@ PLACEMENTS = {
 }
 
 
-def test_rotations_are_what_a_unit_quaternion_means() -> None:
+def test_rotations_are_what_a_quaternion_means() -> None:
     np.testing.assert_allclose(rotation_matrix((1, 0, 0, 0)), np.eye(3))
     quarter = rotation_matrix((HALF, 0, 0, HALF))
     np.testing.assert_allclose(quarter @ [1, 0, 0], [0, 1, 0], atol=1e-12)
     quaternion = np.random.default_rng(0).normal(size=4)
-    any_turn = rotation_matrix(tuple((quaternion / np.linalg.norm(quaternion)).tolist()))
+    any_turn = rotation_matrix(tuple(quaternion.tolist()))
     np.testing.assert_allclose(any_turn @ any_turn.T, np.eye(3), atol=1e-12)
     assert np.linalg.det(any_turn) == pytest.approx(1)
 
@@ -74,3 +76,17 @@ def test_what_belongs_to_a_corner_goes_where_the_corner_goes() -> None:
     plain, mirrored = pairs(False), pairs(True)
     plain[:, :, 0] *= -1
     np.testing.assert_allclose(mirrored, plain[:, [0, 2, 1]])
+
+
+def test_more_copies_than_can_be_held_are_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(placements, "MAX_PLACED_FACES", 10)
+    part = replace(part_of(soup(5)), placements=(Placement(),) * 3)
+    with pytest.raises(FormatError, match="at most 10 faces with all copies, found 15"):
+        PlacedTriangles.of((part,))
+
+
+@pytest.mark.parametrize("place", [1e7, np.inf, np.nan])
+def test_copies_out_of_the_world_are_refused(place: float) -> None:
+    part = replace(part_of(soup(5)), placements=(Placement(offset=(0, place, 0)),))
+    with pytest.raises(FormatError, match="coordinates up to"):
+        PlacedTriangles.of((part,))
