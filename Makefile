@@ -3,7 +3,7 @@
 # make docs: the page of the public names, into build/api
 # make package: sdist and wheel into build/dist, tried in clean environments of every Python that is there
 # make fuzz: RUNS files of a coverage-guided fuzzer against the parser
-# make sanitize: the native backend's tests with the sanitizers of memory and undefined behavior
+# make sanitize: the tests of the native kernels with the sanitizers of memory and undefined behavior
 # make bench: every codec on the assets in ASSETS, into build/bench/report.html; one to three hours, goes on where it stopped
 
 PYTHON ?= python3
@@ -11,7 +11,7 @@ ASSETS ?= ../shared/assets
 RUNS ?= 2000000
 TORCH ?= torch==2.13.0
 BIN := .venv/bin
-KERNEL := $(wildcard nispcodec/train/backend/native/kernel/*)
+KERNEL := $(wildcard nispcodec/train/backend/native/kernel/* nispcodec/infer/native/kernel/*)
 
 .PHONY: setup demo test lint docs package fuzz sanitize bench
 
@@ -68,10 +68,10 @@ SANITIZED := build/sanitize
 sanitize: setup
 	CFLAGS='$(SANITIZE)' CXXFLAGS='$(SANITIZE)' LDFLAGS='$(SANITIZE)' $(BIN)/python setup.py -q build \
 		--force --build-temp $(SANITIZED)/objects --build-lib $(SANITIZED)/lib
-	@echo 'sanitize: $(SANITIZE) in' $(SANITIZED)/lib/nispcodec/train/backend/native/*.so
+	@echo 'sanitize: $(SANITIZE) in' $$(find $(SANITIZED)/lib -name '*.so')
 	LD_PRELOAD="$$(g++ -print-file-name=libasan.so) $$(g++ -print-file-name=libubsan.so)" \
 		ASAN_OPTIONS=detect_leaks=0:quarantine_size_mb=4 UBSAN_OPTIONS=print_stacktrace=1 \
-		$(BIN)/python -m pytest -q --import-mode=importlib -o 'pythonpath=$(SANITIZED)/lib .' tests/train/backend/native
+		$(BIN)/python -m pytest -q --import-mode=importlib -o 'pythonpath=$(SANITIZED)/lib .' tests/train/backend/native tests/infer/native
 
 bench: setup
 	$(BIN)/python -m benchmarks --assets $(ASSETS)

@@ -11,11 +11,14 @@ from nispcodec.core.arrays import (
     Float32Array,
     Float64Array,
     FloatArray,
+    IndexArray,
     Int32Array,
+    IntArray,
 )
 from nispcodec.core.mesh_part import MeshPart
-from nispcodec.infer.mesh_search import MeshSearch
+from nispcodec.infer.mesh_search import MeshSearch, SearchConfig
 from nispcodec.infer.placements import PlacedTriangles
+from nispcodec.infer.surface_normals import SurfaceNormals
 from nispcodec.infer.triangles import closest_weights, triangle_rows
 
 ON_SURFACE = 1e-6
@@ -43,12 +46,16 @@ class PlacedMeshes:
 
     Points (n, 3), any n, are float32 or float64, finite, in the normalized frame. Work is done in
     blocks on every core, so memory is bounded beyond input and output. Without any triangle
-    distances are infinite and all else is 0.
+    distances are infinite and all else is 0. Raises FormatError for more copies of triangles than
+    can be held, or copies a million radii away.
     """
 
-    def __init__(self, parts: tuple[MeshPart, ...]) -> None:
+    def __init__(self, parts: tuple[MeshPart, ...], config: SearchConfig = SearchConfig()) -> None:
         self.triangles = PlacedTriangles.of(parts)
-        self._search = MeshSearch(self.triangles.corners, self.triangles.sheet)
+        self._config = config
+        self._charts: dict[int, tuple[IndexArray, MeshSearch]] = {}
+        self._search = MeshSearch(self.triangles.corners, self.triangles.sheet, config)
+        self._normals = SurfaceNormals(self.triangles.corners)
 
     @property
     def chart_materials(self) -> Int32Array:
@@ -63,17 +70,43 @@ class PlacedMeshes:
     @property
     def face_normals(self) -> Float64Array:
         """(f, 3): unit, as the corners turn; 0 for a triangle without area."""
-        return self._search.face_normals
+        return self._normals.faces
 
-    def closest(self, points: FloatArray) -> Closest:
-        """The closest point to each."""
+    def closest(self, points: FloatArray, charts: IntArray | None = None) -> Closest:
+        """The closest point to each; with charts (n,) the closest on the chart of each.
+
+        Where a chart has no triangle the distance is infinite, and all else as without charts.
+        """
         faces, squared = self._search.closest(points)
-        corners = self.triangles.corners[faces] if len(self.triangles.corners) else None
-        if corners is None:
+        if charts is not None:
+            self._move_to_charts(points, charts, faces, squared)
+        if not len(self.triangles.corners):
             nowhere = np.zeros((len(points), 3))
             return Closest(np.sqrt(squared), faces, nowhere, nowhere.copy())
+        corners = self.triangles.corners[faces]
         weights = closest_weights(triangle_rows(corners), points.T.astype(np.float64)).T
         return Closest(np.sqrt(squared), faces, weights, _mixed(weights, corners))
+
+    def _move_to_charts(
+        self, points: FloatArray, charts: IntArray, faces: Int32Array, squared: Float64Array
+    ) -> None:
+        """Change the faces (n,) and squared distances (n,) of points whose chart is another."""
+        own = self.triangles.charts[faces] if len(self.triangles.charts) else charts
+        elsewhere = np.flatnonzero(own != charts)
+        for chart in np.unique(charts[elsewhere]).tolist():
+            rows = elsewhere[charts[elsewhere] == chart]
+            members, search = self._chart(chart)
+            found, squared[rows] = search.closest(points[rows])
+            if len(members):
+                faces[rows] = members[found]
+
+    def _chart(self, chart: int) -> tuple[IndexArray, MeshSearch]:
+        """The faces of a chart and a search of them alone, which is kept."""
+        if chart not in self._charts:
+            members = np.flatnonzero(self.triangles.charts == chart)
+            corners, sheet = self.triangles.corners[members], self.triangles.sheet[members]
+            self._charts[chart] = members, MeshSearch(corners, sheet, self._config)
+        return self._charts[chart]
 
     def sdf(self, points: FloatArray) -> Float32Array:
         """(n,) distances, negative inside: where the winding number is over 1/2 or under -1/2.
@@ -87,23 +120,30 @@ class PlacedMeshes:
         return distances
 
     def normals(self, points: FloatArray) -> Float32Array:
-        """(n, 3) unit gradient of the distance; on the surface the face's normal, outwards."""
+        """(n, 3) unit gradient of the distance; on the surface its normal, outwards.
+
+        On edges and at corners that is the mean of their faces'. It is 0 without a triangle, and
+        on one without area.
+        """
         found = self.closest(points)
         away = points - found.point
         units = away / np.maximum(found.distance, np.finfo(np.float64).tiny)[:, None]
         units[self._search.inside(points)] *= -1
         near = np.flatnonzero(found.distance < ON_SURFACE)
-        units[near] = self._outwards(found.point[near], found.face[near])
+        if len(near):
+            normals = self._normals.at(found.face[near], found.barycentric[near])
+            units[near] = self._outwards(found.point[near], normals)
         return units.astype(np.float32)
 
-    def _outwards(self, points: Float64Array, faces: Int32Array) -> Float64Array:
-        """Normals of faces at points on them, turned where inside is before them, not behind."""
-        normals = self.face_normals[faces]
+    def _outwards(self, points: Float64Array, normals: Float64Array) -> Float64Array:
+        """Normals (n, 3) at points on the surface, turned where inside is before them, not behind.
+
+        So it does not matter which way the faces of a body look.
+        """
         before, behind = (
             self._search.inside(points + side * ON_SURFACE * normals) for side in (1, -1)
         )
-        normals[before & ~behind] *= -1
-        return normals
+        return np.where((before & ~behind)[:, None], -normals, normals)
 
     def charts(self, points: FloatArray) -> Int32Array:
         """(n,) int32: the chart of the closest triangle."""
@@ -111,9 +151,12 @@ class PlacedMeshes:
             return np.zeros(len(points), np.int32)
         return self.triangles.charts[self._search.closest(points)[0]]
 
-    def uv(self, points: FloatArray) -> Float32Array:
-        """(n, 2) float32: the asset's UV at the closest point; (0, 0) on a chart without."""
-        found = self.closest(points)
+    def uv(self, points: FloatArray, charts: IntArray | None = None) -> Float32Array:
+        """(n, 2) float32: the asset's UV at the closest point; with charts (n,) on these.
+
+        (0, 0) on a chart without UV.
+        """
+        found = self.closest(points, charts)
         if not len(self.triangles.uvs):
             return np.zeros((len(points), 2), np.float32)
         return _mixed(found.barycentric, self.triangles.uvs[found.face]).astype(np.float32)

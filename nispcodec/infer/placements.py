@@ -7,7 +7,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from nispcodec.core.arrays import BoolArray, Float64Array, Int32Array
+from nispcodec.core.errors import FormatError
 from nispcodec.core.mesh_part import MeshPart, Placement, Quaternion
+
+MAX_PLACED_FACES = 2**21
+"""What a search of them takes is about a gigabyte."""
+FAR = 1e6
+"""In radii of the asset: squares of squares of coordinates are far from what float64 holds."""
 
 
 @dataclass(frozen=True)
@@ -32,20 +38,41 @@ class PlacedTriangles:
 
     @staticmethod
     def of(parts: tuple[MeshPart, ...]) -> PlacedTriangles:
-        """The copies of parts, which may be none."""
+        """The copies of parts, which may be none.
+
+        Raises FormatError where there are more than MAX_PLACED_FACES, or one leaves the cube of
+        FAR radii: small files can claim large scenes.
+        """
+        _check_count(parts)
         copies = [_placed(part, each) for part in parts for each in part.placements]
         if not copies:
             return _none()
         starts = np.cumsum([0, *(len(copy.chart_materials) for copy in copies)])
         charts = [copy.charts + start for copy, start in zip(copies, starts, strict=False)]
+        corners = np.concatenate([copy.corners for copy in copies])
+        _check_place(corners)
         return PlacedTriangles(
-            corners=np.concatenate([copy.corners for copy in copies]),
+            corners=corners,
             uvs=np.concatenate([copy.uvs for copy in copies]),
             charts=np.concatenate(charts).astype(np.int32),
             sheet=np.concatenate([copy.sheet for copy in copies]),
             chart_materials=np.concatenate([copy.chart_materials for copy in copies]),
             chart_has_uv=np.concatenate([copy.chart_has_uv for copy in copies]),
         )
+
+
+def _check_count(parts: tuple[MeshPart, ...]) -> None:
+    count = sum(len(part.faces) * len(part.placements) for part in parts)
+    if count > MAX_PLACED_FACES:
+        raise FormatError(
+            "mesh part", "placements", f"at most {MAX_PLACED_FACES} faces with all copies", count
+        )
+
+
+def _check_place(corners: Float64Array) -> None:
+    far = np.abs(corners).max(initial=0)
+    if not far <= FAR:
+        raise FormatError("mesh part", "placements", f"coordinates up to {FAR:g}", float(far))
 
 
 def _none() -> PlacedTriangles:
@@ -77,8 +104,8 @@ def placed_points(placement: Placement, points: Float64Array) -> Float64Array:
 
 
 def rotation_matrix(quaternion: Quaternion) -> Float64Array:
-    """(3, 3): the rotation by a unit quaternion, w first."""
-    w, x, y, z = quaternion
+    """(3, 3): the rotation by a quaternion, w first, which is divided by its length."""
+    w, x, y, z = np.asarray(quaternion) / np.linalg.norm(quaternion)
     return np.array(
         [
             [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],

@@ -29,6 +29,8 @@ SHORT = small(3000, 60, 1, 100, 30, lambda_=1e-6)
 def encode(
     mesh: TexturedMesh, config: EncodeConfig | None = None, progress: Listener = silent
 ) -> NispModel:
+    """As networks: what is a choice of forms is tested beside its code."""
+    config = replace(config or EncodeConfig(), geometry="field")
     return nispcodec.encode(mesh, config, progress, SHORT)
 
 

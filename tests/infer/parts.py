@@ -65,3 +65,34 @@ def part_of(
         uv_origin=(float(low[0]), float(low[1])),
         **more,
     )
+
+
+def soup(count: int, seed: int = 0) -> Float64Array:
+    """(count, 3, 3) triangles that have nothing to do with each other."""
+    rng = np.random.default_rng(seed)
+    centers = rng.uniform(-0.6, 0.6, (count, 1, 3))
+    return centers + rng.normal(0, 0.1, (count, 3, 3))
+
+
+def points_off(corners: Float64Array, count: int, seed: int = 0) -> Float64Array:
+    """(count, 3) half of them anywhere in the cube, half near the triangles, none on them."""
+    rng = np.random.default_rng(seed)
+    half = -(-count // 2)
+    near = points_on(corners, half, seed) + rng.normal(0, 0.01, (half, 3))
+    return np.concatenate([rng.uniform(-1, 1, (half, 3)), near])[:count]
+
+
+def points_on(corners: Float64Array, count: int, seed: int = 0) -> Float64Array:
+    """(count, 3) on the triangles, as nearly as rounding has it."""
+    rng = np.random.default_rng(seed)
+    weights = rng.dirichlet((1, 1, 1), count)[:, :, None]
+    points: Float64Array = (weights * corners[rng.integers(0, len(corners), count)]).sum(axis=1)
+    return points
+
+
+def points_about(corners: Float64Array, count: int, seed: int = 0) -> Float64Array:
+    """(count, 3) off the triangles, on them, and at their corners."""
+    half, fourth = -(-count // 2), -(-count // 4)
+    some = np.random.default_rng(seed).integers(0, 3 * len(corners), fourth)
+    off, on = points_off(corners, half, seed), points_on(corners, fourth, seed + 1)
+    return np.concatenate([off, on, corners.reshape(-1, 3)[some]])[:count]

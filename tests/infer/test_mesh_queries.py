@@ -8,7 +8,7 @@ import pytest
 from nispcodec.core.arrays import Float64Array
 from nispcodec.core.mesh_part import Placement
 from nispcodec.infer.mesh_queries import PlacedMeshes
-from tests.infer.parts import cube, part_of, sphere
+from tests.infer.parts import cube, part_of, soup, sphere
 
 
 def scattered(count: int, seed: int = 0) -> Float64Array:
@@ -46,9 +46,9 @@ def test_bodies_that_overlap_are_one_inside() -> None:
     points = scattered(5000)
     first, second = part_of(cube(0.8, (0.1, 0, 0))), part_of(cube(0.8, (-0.1, 0, 0)))
     sdf = PlacedMeshes((first, second)).sdf(points)
-    inside = (np.abs(points) < [0.5, 0.4, 0.4]).all(axis=1)
+    inside = np.all(np.abs(points) < [0.5, 0.4, 0.4], axis=1)
     clear = np.flatnonzero(np.abs(sdf) > 1e-4)
-    np.testing.assert_array_equal((sdf < 0)[clear], inside[clear])
+    np.testing.assert_array_equal(sdf[clear] < 0, inside[clear])
 
 
 def test_a_body_may_lack_faces_where_another_covers_them() -> None:
@@ -89,6 +89,28 @@ def test_uvs_and_charts_are_those_of_the_closest_point() -> None:
     np.testing.assert_array_equal(charts, part.face_charts[found.face])
     expected = np.where(charts[:, None] == 2, 0, found.point[:, :2])
     np.testing.assert_allclose(placed.uv(points), expected, atol=1e-5)
+
+
+def test_on_charts_that_are_told_it_is_the_closest_of_their_triangles() -> None:
+    corners = soup(60)
+    part = part_of(corners, charts=3)
+    part = replace(
+        part,
+        chart_materials=np.zeros(4, np.int32),
+        chart_has_uv=np.ones(4, np.bool_),
+    )
+    placed, points = PlacedMeshes((part,)), scattered(300)
+    charts = np.random.default_rng(1).integers(0, 4, 300)
+    found = placed.closest(points, charts)
+    for chart in range(3):
+        alone = PlacedMeshes((part_of(placed.triangles.corners[part.face_charts == chart]),))
+        rows = charts == chart
+        np.testing.assert_allclose(
+            found.distance[rows], alone.closest(points[rows]).distance, atol=1e-4
+        )
+        assert (part.face_charts[found.face[rows]] == chart).all()
+    assert np.isinf(found.distance[charts == 3]).all()
+    np.testing.assert_allclose(placed.uv(points, charts), found.point[:, :2], atol=1e-5)
 
 
 def test_copies_have_charts_of_their_own() -> None:
