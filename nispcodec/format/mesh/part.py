@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 
 from nispcodec.core.arrays import Int32Array, Int64Array
+from nispcodec.core.connectivity import row_ids
 from nispcodec.core.errors import FormatError
 from nispcodec.core.mesh_part import MAX_GRID_BITS, MeshPart
 from nispcodec.format.mesh import (
@@ -89,10 +92,25 @@ def _singles(coder: BinaryCoder, given: tuple[float, ...], slot: int, name: str)
 def _surface(coder: BinaryCoder, count: int, part: MeshPart | None) -> tuple[Surface, Given | None]:
     if part is None:
         return Growth(coder, None).grow(count), None
-    twin = manifold.twins(part.faces)
+    twin = manifold.twins(part.faces, _unlike(part))
     known = Known(twin.tolist(), manifold.fans(twin).tolist(), [-1] * count)
     surface = Growth(coder, known).grow(count)
     return surface, Given(part, np.array(known.sides), np.array(surface.twin))
+
+
+def _unlike(part: MeshPart) -> Callable[[int, int], int]:
+    """How little two sides of one edge belong together: other UVs, another chart, the same face."""
+    uvs = np.append(row_ids(part.uvs), -1)[part.uv_faces.reshape(-1)].tolist()
+    charts = part.face_charts.tolist()
+    sets = [set(face) for face in part.faces.tolist()]
+
+    def unlike(one: int, other: int) -> int:
+        after, beyond = one - one % 3 + (one + 1) % 3, other - other % 3 + (other + 1) % 3
+        seam = (uvs[one] != uvs[beyond]) + (uvs[after] != uvs[other])
+        face, over = one // 3, other // 3
+        return seam + 2 * (charts[face] != charts[over]) + 8 * (sets[face] == sets[over])
+
+    return unlike
 
 
 def _places(
