@@ -12,6 +12,7 @@ from __future__ import annotations
 
 from nispcodec.core.errors import FormatError
 from nispcodec.format.mesh.logistic import SQUASH, STRETCH
+from nispcodec.format.mesh.priors import table
 
 SECTION = "MESH"
 _TOP = 1 << 24
@@ -20,6 +21,10 @@ LIMIT = 255
 RATES = tuple(int(65536 / (n + 2)) for n in range(LIMIT + 1))
 LEARNING = 10
 START = 20000
+<<<<<<< HEAD
+=======
+PRIORS = table()
+>>>>>>> coder
 
 
 class BinaryCoder:
@@ -41,13 +46,13 @@ class BinaryCoder:
         """One bit; `slot` says which decision it is (below 4096), the others its contexts."""
         first = self._general.get(slot << 20 | general)
         if first is None:
-            first = self._general[slot << 20 | general] = [32768, 0]
+            first = self._general[slot << 20 | general] = list(PRIORS.get(slot, (32768, 0)))
         second = self._medium.get(slot << 20 | medium)
         if second is None:
-            second = self._medium[slot << 20 | medium] = [first[0], 0]
+            second = self._medium[slot << 20 | medium] = [first[0], 1]
         third = self._special.get(slot << 20 | special)
         if third is None:
-            third = self._special[slot << 20 | special] = [first[0], 0]
+            third = self._special[slot << 20 | special] = [first[0], 1]
         weights = self._weights.get(slot)
         if weights is None:
             weights = self._weights[slot] = [START, START, START]

@@ -14,7 +14,7 @@ from dataclasses import dataclass, field
 from nispcodec.core.errors import FormatError
 from nispcodec.format.mesh import slots
 from nispcodec.format.mesh.binary_coder import SECTION, BinaryCoder
-from nispcodec.format.mesh.numbers import signed
+from nispcodec.format.mesh.numbers import Context, signed
 
 GONE, OPEN, DEAD = 0, 1, 2
 NEAR = 255
@@ -73,9 +73,11 @@ class Growth:
     def grow(self, faces: int) -> Surface:
         """All `faces` of the surface."""
         while len(self.surface.corners) < 3 * faces:
-            self._begin()
-            while (gate := self._best()) is not None:
-                self._grow(gate, 3 * faces)
+            gate = self._best()
+            if gate is None:
+                self._begin()
+            else:
+                self._grow(gate)
         return self.surface
 
     def _begin(self) -> None:
@@ -148,7 +150,7 @@ class Growth:
                     return gate
         return None
 
-    def _grow(self, gate: int, end: int) -> None:
+    def _grow(self, gate: int) -> None:
         """What lies over one gate."""
         face = self._known_face(gate)
         action, third = self._known_action(gate, face)
@@ -156,8 +158,6 @@ class Growth:
         if action == slots.BORDER:
             self._state[gate] = DEAD
             return
-        if len(self.surface.corners) >= end:
-            raise FormatError(SECTION, "faces", end // 3, "more")
         self._history = (self._history << 2 | (action - slots.NEW)) & 255
         if action == slots.NEW:
             self._insert(gate, self._point(), None, face)
@@ -259,7 +259,11 @@ class Growth:
         back = coder.bit(behind < ahead, slots.BACK, 0, 0, 0)
         links = self._previous if back else self._next
         found = gate
+<<<<<<< HEAD
         length = signed(coder, steps, slots.STEPS, 0, 0, 0, 0)
+=======
+        length = signed(coder, steps, slots.STEPS, Context(0))
+>>>>>>> coder
         if not 0 < length <= NEAR:
             raise FormatError(SECTION, "steps", f"1 to {NEAR}", length)
         for _ in range(length):

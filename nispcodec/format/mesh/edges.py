@@ -9,6 +9,7 @@ from nispcodec.format.mesh import slots
 from nispcodec.format.mesh.binary_coder import BinaryCoder
 from nispcodec.format.mesh.connectivity import Surface
 from nispcodec.format.mesh.fields import flag
+from nispcodec.format.mesh.numbers import shortened
 from nispcodec.format.mesh.positions import Vector
 from nispcodec.format.mesh.surface import Given
 
@@ -31,17 +32,12 @@ def bends(corners: list[int], twin: list[int], places: list[Vector]) -> list[int
 
 
 def _normal(a: Vector, b: Vector, c: Vector) -> tuple[int, int, int, int]:
-    u = _fine([b[i] - a[i] for i in range(3)])
-    v = _fine([c[i] - a[i] for i in range(3)])
-    x, y, z = _fine(
-        [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]]
+    u = shortened([b[i] - a[i] for i in range(3)], FINE)
+    v = shortened([c[i] - a[i] for i in range(3)], FINE)
+    x, y, z = shortened(
+        [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]], FINE
     )
     return x, y, z, x * x + y * y + z * z
-
-
-def _fine(values: list[int]) -> list[int]:
-    shift = max(max(map(abs, values)).bit_length() - FINE, 0)
-    return [value >> shift for value in values]
 
 
 def code(

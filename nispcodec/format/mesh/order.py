@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 MOST = 3
+HINGES = 16
 Hinges = list[tuple[int, int, int]]
 """Of each face with two known nodes these two, a and b, and the node that lies over their edge, c,
 -1 where none is known there."""
@@ -61,6 +62,8 @@ def _sources(
         opposite, last = base + (turn + 1) % 3, base + (turn + 2) % 3
         a, b = corners[opposite], corners[last]
         if known[a] and known[b]:
+            if len(hinges) == HINGES:
+                break
             over = twin[opposite]
             c = corners[over - over % 3 + (over + 2) % 3] if over >= 0 else -1
             hinges.append((a, b, c if c >= 0 and known[c] else -1))

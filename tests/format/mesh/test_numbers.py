@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from nispcodec.format.mesh.binary_coder import Decoder, Encoder
-from nispcodec.format.mesh.numbers import LONGEST, signed
+from nispcodec.format.mesh.numbers import LONGEST, Context, signed
 
 VALUES = st.integers(-(2**LONGEST) + 1, 2**LONGEST - 1)
 
@@ -15,9 +15,9 @@ VALUES = st.integers(-(2**LONGEST) + 1, 2**LONGEST - 1)
 def test_what_comes_back(values: list[tuple[int, int]]) -> None:
     encoder = Encoder()
     for value, expected in values:
-        assert signed(encoder, value, 64, expected, 1, 2) == value
+        assert signed(encoder, value, 64, Context(expected, 1, 2)) == value
     decoder = Decoder(encoder.finish())
-    assert [signed(decoder, 0, 64, expected, 1, 2) for _, expected in values] == [
+    assert [signed(decoder, 0, 64, Context(expected, 1, 2)) for _, expected in values] == [
         value for value, _ in values
     ]
 
@@ -27,6 +27,6 @@ def test_what_was_expected_takes_less() -> None:
     for expected in (0, 6):
         encoder = Encoder()
         for value in (40, -50, 33, -61, 45, 58):
-            signed(encoder, value, 64, expected, 0, 0)
+            signed(encoder, value, 64, Context(expected))
         sizes[expected] = len(encoder.finish())
     assert sizes[6] < sizes[0]
