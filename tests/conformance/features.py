@@ -13,7 +13,7 @@ from PIL import Image
 
 from nispcodec.core.arrays import Uint8Array
 from nispcodec.core.asset import WRAPS, Material, Texture, TextureMap
-from nispcodec.core.document import ChartTable, Document, Frame
+from nispcodec.core.document import ChartTable, Document, Frame, StoredSection
 from nispcodec.core.initial_weights import predicted
 from nispcodec.core.network import Network, NetworkSpec
 from nispcodec.core.slots import SLOTS
@@ -22,7 +22,7 @@ from nispcodec.format.codings import entropy
 from nispcodec.format.codings.registry import BY_NAME
 from nispcodec.format.records import Record, tensors
 from tests.conformance.builder import container
-from tests.conformance.malformed import rows
+from tests.conformance.malformed import rows, squeezed
 
 SYMBOL_STEP = 2.0**-9
 ROW_STEP = 2.0**-14
@@ -297,7 +297,8 @@ def _containers() -> Iterator[tuple[str, bytes]]:
         "hidden_share": 0.0129, "uv_error_mean": 3.34e-6,
     }  # fmt: skip
     yield "info", pack(dataclasses.replace(plain(), info=info))
-    extra = {"AAAA": b"", "ZZ99": b"kept, whatever it is " * 20}
+    text = b"kept, whatever it is " * 20
+    extra = {"AAAA": StoredSection(b""), "ZZ99": StoredSection(squeezed(text), len(text))}
     yield "unknown-ancillary", pack(dataclasses.replace(plain(), extra=extra))
     yield "textures-two-alike", pack(dataclasses.replace(textured(), textures=_twins()))
     yield "minor-version", container(rows(), minor=9)

@@ -80,11 +80,11 @@ def all_malformed() -> Iterator[Malformed]:
 
 def _headers() -> Iterator[Malformed]:
     good = container(rows())
-    yield Malformed("empty", b"", "header", "file length")
-    yield Malformed("header-cut", good[:15], "header", "file length")
-    yield Malformed("table-cut", good[:40], "header", "file length")
-    yield Malformed("payload-cut", good[:-1], "NETS", "stored length")
-    yield Malformed("byte-too-many", good + b"\0", "header", "file length")
+    yield Malformed("empty", b"", "header", "file_length")
+    yield Malformed("header-cut", good[:15], "header", "file_length")
+    yield Malformed("table-cut", good[:40], "header", "file_length")
+    yield Malformed("payload-cut", good[:-1], "NETS", "stored_length")
+    yield Malformed("byte-too-many", good + b"\0", "header", "file_length")
     for name, signature in {
         "signature-other": b"\x89PNG\r\n\x1a\n",
         "signature-seven-bit": b"\x09NSP\r\n\x1a\n",
@@ -93,28 +93,28 @@ def _headers() -> Iterator[Malformed]:
     }.items():
         yield Malformed(name, container(rows(), signature=signature), "header", "signature")
     for major in (0, 2):
-        yield Malformed(f"major-{major}", container(rows(), major=major), "header", "major version")
-    yield Malformed("sections-none", container([]), "header", "section count")
+        yield Malformed(f"major-{major}", container(rows(), major=major), "header", "major_version")
+    yield Malformed("sections-none", container([]), "header", "section_count")
     many = [Row(b"X%03d" % i, b"", flags=0) for i in range(65)]
-    yield Malformed("sections-many", container(many), "header", "section count")
+    yield Malformed("sections-many", container(many), "header", "section_count")
     yield Malformed("header-checksum", container(rows(), checksum=1), "header", "checksum")
 
 
 def _entries() -> Iterator[Malformed]:
     claims: dict[str, tuple[dict[str, Any], str, str]] = {
-        "code-lower-case": ({"code": b"nets"}, "header", "section code"),
-        "code-not-ascii": ({"code": b"N\xc9TS"}, "header", "section code"),
+        "code-lower-case": ({"code": b"nets"}, "header", "section_code"),
+        "code-not-ascii": ({"code": b"N\xc9TS"}, "header", "section_code"),
         "flags-unknown": ({"flags": 5}, "NETS", "flags"),
         "flags-ancillary": ({"flags": 0}, "NETS", "flags"),
         "offset-gap": ({"offset": 1000}, "NETS", "offset"),
         "offset-overlap": ({"offset": 16}, "NETS", "offset"),
-        "stored-too-long": ({"stored": 2**32 - 1}, "NETS", "stored length"),
+        "stored-too-long": ({"stored": 2**32 - 1}, "NETS", "stored_length"),
         "stored-too-short": (
             {"stored": 1, "decoded": 1, "checksum": 0xA505DF1B},
             "header",
-            "file length",
+            "file_length",
         ),
-        "decoded-not-stored": ({"decoded": 5}, "NETS", "decoded length"),
+        "decoded-not-stored": ({"decoded": 5}, "NETS", "decoded_length"),
         "payload-checksum": ({"checksum": 5}, "NETS", "checksum"),
     }
     for name, (claim, section, field) in claims.items():
@@ -123,10 +123,10 @@ def _entries() -> Iterator[Malformed]:
 
 def _sections() -> Iterator[Malformed]:
     two = rows()
-    yield Malformed("section-order", container(two[::-1]), "header", "section order")
-    yield Malformed("section-twice", container([*two, two[1]]), "header", "section order")
+    yield Malformed("section-order", container(two[::-1]), "header", "section_order")
+    yield Malformed("section-twice", container([*two, two[1]]), "header", "section_order")
     critical = [*two, Row(b"ZZZZ", b"")]
-    yield Malformed("critical-unknown", container(critical), "ZZZZ", "section code")
+    yield Malformed("critical-unknown", container(critical), "ZZZZ", "section_code")
     yield Malformed("meta-missing", container(two[1:]), "META", "section")
     yield Malformed("nets-missing", container(two[:1]), "NETS", "section")
     yield Malformed("txtr-unasked", container([*two, Row(b"TXTR", b"")]), "TXTR", "section")
@@ -144,10 +144,10 @@ def _packings() -> Iterator[Malformed]:
         "zstd-noise": (b"\xff" * 8, len(content), "payload"),
         "zstd-cut": (packed[:-1], len(content), "payload"),
         "zstd-two-frames": (squeezed(bytes(999)) * 2, 999, "payload"),
-        "zstd-skippable": (b"\x50\x2a\x4d\x18\x04\0\0\0abcd", len(content), "zstd content size"),
-        "zstd-no-size": (unsized, len(content), "zstd content size"),
-        "zstd-other-size": (packed, len(content) + 1, "zstd content size"),
-        "zstd-not-smaller": (packed, len(packed), "decoded length"),
+        "zstd-skippable": (b"\x50\x2a\x4d\x18\x04\0\0\0abcd", len(content), "content_size"),
+        "zstd-no-size": (unsized, len(content), "content_size"),
+        "zstd-other-size": (packed, len(content) + 1, "content_size"),
+        "zstd-not-smaller": (packed, len(packed), "decoded_length"),
     }
     for name, (payload, decoded, field) in cases.items():
         claim = {"payload": payload, "flags": 3, "decoded": decoded}
@@ -155,7 +155,7 @@ def _packings() -> Iterator[Malformed]:
     bomb = squeezed(bytes(2**25 + 1))
     claim = {"payload": bomb, "flags": 3, "decoded": 2**25 + 1}
     file = container(change(rows(), b"NETS", **claim))
-    yield Malformed("zstd-bomb", file, "header", "decoded length")
+    yield Malformed("zstd-bomb", file, "header", "decoded_length")
 
 
 def _encodings() -> Iterator[Malformed]:
@@ -218,17 +218,17 @@ _FIELDS: dict[str, tuple[dict[int, Any], str]] = {
     "info-key-unknown": ({10: {9: 1}}, "document.info.9"),
     "info-key-by-name": ({10: {"seed": 1}}, "document.info.seed"),
     "info-key-bool": ({10: {True: 1}}, "document.info.True"),
-    "info-value": ({10: {1: [1]}}, "document.info.1"),
+    "info-value": ({10: {1: [1]}}, "document.info.preset"),
     "preset-reserved": ({10: {1: 0}}, "document.info.preset"),
     "preset-unknown": ({10: {1: 5}}, "document.info.preset"),
     "preset-by-name": ({10: {1: "paper"}}, "document.info.preset"),
 }
 _SPECS: dict[str, tuple[dict[int, Any], str]] = {
     "hidden-missing": ({}, "hidden"),
-    "hidden-empty": ({1: []}, "hidden layers"),
-    "hidden-deep": ({1: [1] * 33}, "hidden layers"),
-    "hidden-zero": ({1: [0]}, "hidden width"),
-    "hidden-wide": ({1: [1025]}, "hidden width"),
+    "hidden-empty": ({1: []}, "hidden"),
+    "hidden-deep": ({1: [1] * 33}, "hidden"),
+    "hidden-zero": ({1: [0]}, "hidden"),
+    "hidden-wide": ({1: [1025]}, "hidden"),
     "hidden-text": ({1: ["a"]}, "hidden"),
     "encoding-reserved": ({1: [2], 2: 0}, "encoding"),
     "encoding-unknown": ({1: [2], 2: 3}, "encoding"),
@@ -297,11 +297,11 @@ def _relations() -> Iterator[Malformed]:
     many = b"".join(dense(count) for _ in range(2) for count in TENSOR_SIZES)
     cases: dict[str, tuple[dict[int, Any], bytes, str]] = {
         "materials-none": ({7: []}, nets(), "document.materials"),
-        "chart-material-unknown": ({4: b"\x01"}, nets(), "document.chart materials"),
-        "map-texture-unknown": ({7: [{9: {1: {}}}]}, nets(), "document.material.base_color"),
-        "chart-network-missing": ({3: 2, 5: b"\0"}, nets(), "document.chart network"),
-        "chart-network-unasked": ({2: {1: spec, 2: spec}}, many, "document.chart network"),
-        "uv-network-missing": ({5: None}, nets(), "document.uv network"),
+        "chart-material-unknown": ({4: b"\x01"}, nets(), "document.chart_materials"),
+        "map-texture-unknown": ({7: [{9: {1: {}}}]}, nets(), "materials.0.maps.base_color.texture"),
+        "chart-network-missing": ({3: 2, 5: b"\0"}, nets(), "networks.chart"),
+        "chart-network-unasked": ({2: {1: spec, 2: spec}}, many, "networks.chart"),
+        "uv-network-missing": ({5: None}, nets(), "networks.uv"),
     }
     for name, (changes, data, field) in cases.items():
         yield Malformed(name, container(rows(meta(changes), data)), "META", field)
@@ -322,9 +322,9 @@ def _tensors() -> Iterator[Malformed]:
         "wide-tag-joined-many": (b"\0\x06\0\x04", "joined"),
         "delta-init-without-step": (b"\x07\0" + dense(6)[1:], "step"),
         "joined-dense": (b"\x41" + dense(6)[1:], "joined"),
-        "number-kind-reserved": (b"\x01\0" + bytes(12), "number kind"),
-        "number-kind-of-symbols": (b"\x01\x03" + bytes(6), "number kind"),
-        "number-kind-of-floats": (b"\x19\0\0\0\x3f\x02" + bytes(12), "number kind"),
+        "number-kind-reserved": (b"\x01\0" + bytes(12), "number_kind"),
+        "number-kind-of-symbols": (b"\x01\x03" + bytes(6), "number_kind"),
+        "number-kind-of-floats": (b"\x19\0\0\0\x3f\x02" + bytes(12), "number_kind"),
         "step-zero": (b"\x19\0\0\0\0\x03" + bytes(6), "step"),
         "step-negative": (b"\x19" + struct.pack("<f", -1) + b"\x03" + bytes(6), "step"),
         "step-nan": (b"\x11" + struct.pack("<e", float("nan")) + b"\x03" + bytes(6), "step"),
@@ -353,14 +353,14 @@ def _sparse() -> Iterator[Malformed]:
         "coo-count-long": (b"\x02\x80\0", "count"),
         "coo-count-endless": (b"\x02" + b"\x80" * 6, "count"),
         "coo-row": (b"\x02\x02\x01\x01\0\0" + one + b"\0\x3c", "row"),
-        "coo-row-step": (b"\x02\x01\x02\0" + one, "row step"),
+        "coo-row-step": (b"\x02\x01\x02\0" + one, "row_step"),
         "coo-column": (b"\x02\x02\0\0\x02\0" + one + b"\0\x3c", "column"),
-        "coo-column-gap": (b"\x02\x01\0\x03" + one, "column gap"),
-        "csr-row-count": (b"\x04\x04\0", "row count"),
+        "coo-column-gap": (b"\x02\x01\0\x03" + one, "column_gap"),
+        "csr-row-count": (b"\x04\x04\0", "row_count"),
         "csr-column": (b"\x04\x02\0\x02\0" + one + b"\0\x3c", "column"),
         "csc-column": (b"\x03\x02\0\0\x01\x01" + one + b"\0\x3c", "column"),
-        "dia-count": (b"\x05\x05", "diagonal count"),
-        "dia-gap": (b"\x05\x01\x04", "diagonal gap"),
+        "dia-count": (b"\x05\x05", "diagonal_count"),
+        "dia-gap": (b"\x05\x01\x04", "diagonal_gap"),
         "dia-diagonal": (b"\x05\x02\x03\0", "diagonal"),
     }
     for name, (tensor, field) in cases.items():
@@ -379,10 +379,10 @@ def _entropy() -> Iterator[Malformed]:
         "stream-missing": (header, b"", "words"),
         "stream-half-a-state": (header, stream[:2], "words"),
         "stream-cut": (wide, wide_stream[:4], "words"),
-        "stream-final-state": (header, b"\0\x40" + stream[2:], "final state"),
+        "stream-final-state": (header, b"\0\x40" + stream[2:], "final_state"),
         "stream-too-long": (header, stream + b"\0\0", "end"),
         "stream-odd": (header, stream + b"\0", "end"),
-        "open-bits-cut": (wide, wide_stream[:-1], "open bits"),
+        "open-bits-cut": (wide, wide_stream[:-1], "open_bits"),
         "magnitude-above-limit": (b"\x81\x04" + wide[2:], wide_stream, "magnitude"),
     }
     for name, (start, end, field) in cases.items():
@@ -392,13 +392,13 @@ def _entropy() -> Iterator[Malformed]:
     tail = entropy.encode([three])
     first = b"\x1e" + struct.pack("<f", 0.5) + three.header()
     tail = tail[:-1] + bytes([tail[-1] | 1])
-    yield Malformed("open-bits-tail", container(rows(None, nets(first, tail))), "NETS", "open bits")
+    yield Malformed("open-bits-tail", container(rows(None, nets(first, tail))), "NETS", "open_bits")
 
 
 def _heads() -> Iterator[Malformed]:
     step = struct.pack("<f", 0.5)
     cases = {
-        "top-kind": (b"\x06\x03", "number kind"),
+        "top-kind": (b"\x06\x03", "number_kind"),
         "top-large": (b"\x06\x02\x80\xf8\x01\0", "top"),
         "limit-above-top": (b"\x06\x02\x05\x06", "limit"),
         "limit-large": (b"\x1e" + step + b"\x80\x80\x80\x04", "limit"),
