@@ -145,14 +145,15 @@ def sample_texture(
     wrap: tuple[str, str] = ("repeat", "repeat"),
     filter: str = "linear",
 ) -> Float32Array:
-    """Colors (n, c) float32 of an (h, w, c) image at (n, 2) finite UVs, origin bottom-left.
+    """Colors (n, c) float32 of an (h, w, c) image at (n, 2) UVs, origin bottom-left.
 
     Texel centers lie at half-integers, as in OpenGL and glTF; `wrap` and `filter` are those of
-    `TextureMap`. Never filters between mip levels.
+    `TextureMap`. A coordinate that is NaN or infinite counts as 0. Never filters between mip
+    levels.
     """
     height, width = image.shape[:2]
-    x = np.asarray(uv[:, 0], dtype=np.float64) * width
-    y = (1.0 - np.asarray(uv[:, 1], dtype=np.float64)) * height
+    u, v = np.nan_to_num(np.asarray(uv, dtype=np.float64), posinf=0.0, neginf=0.0).T
+    x, y = u * width, (1.0 - v) * height
     if filter == "nearest":
         return image[_texel(np.floor(y), height, wrap[1]), _texel(np.floor(x), width, wrap[0])]
     left, top = np.floor(x - 0.5), np.floor(y - 0.5)

@@ -63,6 +63,13 @@ def squeezed(data: bytes) -> bytes:
     return zstandard.ZstdCompressor(level=19).compress(data)
 
 
+def with_dictionary(frame: bytes, number: int) -> bytes:
+    """A frame whose header states a dictionary ID, of one byte."""
+    assert frame[4] & 3 == 0
+    start = 5 if frame[4] >> 5 & 1 else 6
+    return frame[:4] + bytes([frame[4] | 1]) + frame[5:start] + bytes([number]) + frame[start:]
+
+
 def all_malformed() -> Iterator[Malformed]:
     """Every way of failing."""
     yield from _headers()
@@ -104,6 +111,7 @@ def _entries() -> Iterator[Malformed]:
     claims: dict[str, tuple[dict[str, Any], str, str]] = {
         "code-lower-case": ({"code": b"nets"}, "header", "section_code"),
         "code-not-ascii": ({"code": b"N\xc9TS"}, "header", "section_code"),
+        "code-punctuation": ({"code": b"N_TS"}, "header", "section_code"),
         "flags-unknown": ({"flags": 5}, "NETS", "flags"),
         "flags-ancillary": ({"flags": 0}, "NETS", "flags"),
         "offset-gap": ({"offset": 1000}, "NETS", "offset"),
@@ -123,6 +131,16 @@ def _entries() -> Iterator[Malformed]:
 
 def _sections() -> Iterator[Malformed]:
     two = rows()
+    lower = [*two, Row(b"nets", b"", flags=0)]
+    yield Malformed("code-lower-case-ancillary", container(lower), "header", "section_code")
+    for code in (b"META", b"TXTR"):
+        whole = [*rows(meta({8: [{1: "a"}]})), Row(b"TXTR", b"1234")]
+        name = f"{code.decode().lower()}-ancillary"
+        yield Malformed(name, container(change(whole, code, flags=0)), code.decode(), "flags")
+    wrong = container(change(two, b"META", checksum=5))
+    yield Malformed("meta-checksum", wrong, "META", "checksum")
+    unknown = [*two, Row(b"ZZZZ", b"abc", flags=0, checksum=5)]
+    yield Malformed("ancillary-checksum", container(unknown), "ZZZZ", "checksum")
     yield Malformed("section-order", container(two[::-1]), "header", "section_order")
     yield Malformed("section-twice", container([*two, two[1]]), "header", "section_order")
     critical = [*two, Row(b"ZZZZ", b"")]
@@ -134,17 +152,22 @@ def _sections() -> Iterator[Malformed]:
     yield Malformed("txtr-missing", container(textured), "TXTR", "section")
     short = [*textured, Row(b"TXTR", b"1234")]
     yield Malformed("txtr-too-short", container(short), "TXTR", "length")
+    none_left = [*textured, Row(b"TXTR", b"12345")]
+    yield Malformed("texture-last-empty", container(none_left), "TXTR", "length")
 
 
 def _packings() -> Iterator[Malformed]:
     content = nets()
     packed = squeezed(content)
+    checked = zstandard.ZstdCompressor(write_checksum=True).compress(content)
     unsized = zstandard.ZstdCompressor(write_content_size=False).compress(content)
     cases = {
         "zstd-noise": (b"\xff" * 8, len(content), "payload"),
         "zstd-cut": (packed[:-1], len(content), "payload"),
         "zstd-two-frames": (squeezed(bytes(999)) * 2, 999, "payload"),
         "zstd-skippable": (b"\x50\x2a\x4d\x18\x04\0\0\0abcd", len(content), "content_size"),
+        "zstd-dictionary": (with_dictionary(packed, 7), len(content), "payload"),
+        "zstd-checksum-wrong": (checked[:-1] + bytes([checked[-1] ^ 1]), len(content), "payload"),
         "zstd-no-size": (unsized, len(content), "content_size"),
         "zstd-other-size": (packed, len(content) + 1, "content_size"),
         "zstd-not-smaller": (packed, len(packed), "decoded_length"),
@@ -172,6 +195,11 @@ def _encodings() -> Iterator[Malformed]:
         "msgpack-key-map": (b"\x81\x80\x01", "msgpack"),
         "msgpack-long-integer": (b"\x81\x03\xcc\x02", "msgpack"),
         "msgpack-long-map": (b"\xde\x00\x01\x01\x01", "msgpack"),
+        "msgpack-long-str": (b"\x81\xd9\x01a\x01", "msgpack"),
+        "msgpack-long-bin": (b"\x81\x05\xc5\x00\x01\x00", "msgpack"),
+        "msgpack-long-array": (b"\x81\x01\xdc\x00\x01\x01", "msgpack"),
+        "msgpack-signed-positive": (b"\x81\x03\xd0\x02", "msgpack"),
+        "msgpack-long-negative": (b"\x81\x03\xd1\xff\x80", "msgpack"),
         "msgpack-wide-float": (b"\x81\x01\xcb" + struct.pack(">d", 0.5), "msgpack"),
         "msgpack-nan": (b"\x81\x01\xca" + struct.pack(">f", float("nan")), "number"),
         "msgpack-infinity": (b"\x81\x01\xca" + struct.pack(">f", float("inf")), "number"),
@@ -210,6 +238,8 @@ _FIELDS: dict[str, tuple[dict[int, Any], str]] = {
     "chart-has-uv-default": ({5: b"\x80"}, "document.chart_has_uv"),
     "uv-map-default": ({6: [0.0, 0.0, 1.0, 1.0]}, "document.uv_map"),
     "half-thickness-integer": ({9: 1}, "document.half_thickness"),
+    "half-thickness-negative-zero": ({9: -0.0}, "document.half_thickness"),
+    "uv-map-negative-zero": ({6: [-0.0, 0.0, 1.0, 1.0]}, "document.uv_map"),
     "openings-default": ({11: False}, "document.openings"),
     "openings-alone": ({11: True}, "document.openings"),
     "info-empty": ({10: {}}, "document.info"),
@@ -219,6 +249,12 @@ _FIELDS: dict[str, tuple[dict[int, Any], str]] = {
     "info-key-by-name": ({10: {"seed": 1}}, "document.info.seed"),
     "info-key-bool": ({10: {True: 1}}, "document.info.True"),
     "info-value": ({10: {1: [1]}}, "document.info.preset"),
+    "info-seed-float": ({10: {2: 1.5}}, "document.info.seed"),
+    "info-measure-text": ({10: {5: "small"}}, "document.info.distance_error"),
+    "info-measure-bool": ({10: {6: True}}, "document.info.chart_accuracy"),
+    "info-text-control": ({10: {"tool": "a\nb"}}, "document.info.tool"),
+    "info-key-control": ({10: {"a\x00b": 1}}, "document.info"),
+    "preset-control": ({10: {1: "a\x7fb"}}, "document.info.preset"),
     "preset-reserved": ({10: {1: 0}}, "document.info.preset"),
     "preset-unknown": ({10: {1: 5}}, "document.info.preset"),
     "preset-by-name": ({10: {1: "paper"}}, "document.info.preset"),
@@ -265,6 +301,9 @@ def _fields() -> Iterator[Malformed]:
 def _materials() -> Iterator[Malformed]:
     cases: dict[str, tuple[dict[int, Any], str]] = {
         "name-control": ({1: "a\nb"}, "name"),
+        "name-delete": ({1: "a\x7f"}, "name"),
+        "roughness-default": ({4: 1.0}, "roughness"),
+        "metallic-negative-zero": ({3: -0.0}, "metallic"),
         "base-color-of-three": ({2: [0.5, 0.5, 0.5]}, "base_color"),
         "alpha-mode-unknown": ({6: 4}, "alpha_mode"),
         "double-sided-number": ({8: 1}, "double_sided"),
@@ -281,6 +320,13 @@ def _materials() -> Iterator[Malformed]:
         "texture-nameless": ([{3: 1}, last], "name"),
         "texture-name-empty": ([{1: ""}], "name"),
         "texture-path": ([{1: "../a.png"}], "name"),
+        "texture-path-slash": ([{1: "a/b"}], "name"),
+        "texture-path-backslash": ([{1: "a\\b"}], "name"),
+        "texture-path-drive": ([{1: "c:b"}], "name"),
+        "texture-path-dot": ([{1: "."}], "name"),
+        "texture-path-dots": ([{1: ".."}], "name"),
+        "texture-name-delete": ([{1: "a\x7f"}], "name"),
+        "texture-length-zero": ([{1: "a", 3: 0}, last], "length"),
         "texture-default-ending": ([{1: "a.png"}], "name"),
         "texture-mime-unknown": ([{1: "a", 2: 5}], "mime"),
         "texture-length-missing": ([{1: "a"}, last], "length"),
@@ -419,5 +465,17 @@ def _heads() -> Iterator[Malformed]:
     first = b"\x1f" + step + b"\x64" + far.header()
     file = container(rows(None, nets(first, entropy.encode([far]))))
     yield Malformed("delta-init-symbol-large", file, "NETS", "sdf.weight.0")
+    yield _low_state()
     joined = b"".join(dense(count) for count in TENSOR_SIZES[:-1]) + b"\x5e" + step + b"\0"
     yield Malformed("joined-many", container(rows(None, joined)), "NETS", "sdf.bias.1.joined")
+
+
+def _low_state() -> Malformed:
+    """A stream of one token that ends as it should, from a state that no encoder ends with."""
+    one = entropy.SymbolRun(np.array([1], np.int32))
+    starts, _ = one.tokens()
+    stream = struct.pack("<3H", 0, starts[0] + 1, 0)
+    last = [dense(count) for count in TENSOR_SIZES[:-1]]
+    record = b"\x1e" + struct.pack("<f", 0.5) + one.header()
+    file = container(rows(None, b"".join([*last, record, stream])))
+    return Malformed("stream-first-state", file, "NETS", "first_state")

@@ -86,6 +86,13 @@ def test_nearest_takes_the_texel_under_the_point() -> None:
     assert sampled(-0.01, 0.51, filter="nearest") == 11
 
 
+@pytest.mark.parametrize("odd", [np.nan, np.inf, -np.inf])
+@pytest.mark.parametrize("filter", ["linear", "nearest"])
+def test_a_coordinate_that_is_not_finite_counts_as_0(odd: float, filter: str) -> None:
+    assert sampled(odd, 0.3, filter=filter) == sampled(0.0, 0.3, filter=filter)
+    assert sampled(0.3, odd, filter=filter) == sampled(0.3, 0.0, filter=filter)
+
+
 def test_uv_far_outside_is_finite() -> None:
     values = sample_texture(SMALL, np.array([[1e300, -1e300], [-3e9, 3e18]]))
     assert np.isfinite(values).all()
