@@ -185,11 +185,25 @@ def _codings() -> Iterator[tuple[str, bytes]]:
     shorter = quantized(network((100, 100), 1, 15), 2.0**-8)
     yield "coding-entropy-one-state", pack(dataclasses.replace(plain(), sdf=shorter), "entropy")
     yield from _wide_indices()
+    yield "coding-entropy-256-cells", pack(_largest_of(256), "entropy")
     for coding in ("dense", "entropy"):
         yield f"coding-{coding}-subnormal", pack(_subnormal(), coding)
     empty = Network(plain().sdf.spec, {k: v * 0 for k, v in plain().sdf.tensors.items()})
     for coding in ("coo", "csr", "dia", "entropy"):
         yield f"coding-{coding}-empty", pack(dataclasses.replace(plain(), sdf=empty), coding)
+
+
+def _largest_of(limit: int) -> Document:
+    """Symbols up to a limit, of either sign, in every tensor."""
+    sdf = network((12, 11), 1, 0)
+    steps = {name: float(np.abs(each).max()) / limit for name, each in sdf.tensors.items()}
+    steps = {name: 2.0 ** math.floor(math.log2(step)) for name, step in steps.items()}
+    tensors = {
+        name: np.clip(np.rint(each / steps[name]), -limit, limit).astype("f4")
+        * np.float32(steps[name])
+        for name, each in sdf.tensors.items()
+    }
+    return dataclasses.replace(plain(), sdf=Network(sdf.spec, tensors, steps))
 
 
 def _wide_indices() -> Iterator[tuple[str, bytes]]:

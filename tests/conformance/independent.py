@@ -121,7 +121,8 @@ def unpacked(row: tuple[str, bool, bool, bytes, int]) -> bytes:
         frame = zstandard.get_frame_parameters(payload)
         assert frame.content_size == length
         assert frame.dict_id == 0
-        payload = zstandard.ZstdDecompressor().decompress(payload, allow_extra_data=False)
+        unpack = zstandard.ZstdDecompressor().decompress
+        payload = unpack(payload, max_output_size=length, allow_extra_data=False)
     assert len(payload) == length
     return payload
 

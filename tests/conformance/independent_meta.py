@@ -271,7 +271,6 @@ def read_textures(values: list[Any]) -> list[dict[str, Any]]:
     textures = [named("textures", value) for value in values]
     for number, texture in enumerate(textures):
         assert (texture["length"] is None) == (number == len(textures) - 1)
-        assert texture["length"] is None or texture["length"] >= 1
         name, ending = texture["name"], endings[texture["mime"]]
         assert name not in ("", ".", "..")
         assert not set(name) & set("/\\:")

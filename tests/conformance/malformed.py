@@ -63,6 +63,13 @@ def squeezed(data: bytes) -> bytes:
     return zstandard.ZstdCompressor(level=19).compress(data)
 
 
+def noise() -> bytes:
+    """NETS that no packing makes shorter."""
+    numbers = np.random.default_rng(0).uniform(-1, 1, sum(TENSOR_SIZES)).astype("<f2")
+    ends = np.cumsum(TENSOR_SIZES)[:-1]
+    return b"".join(b"\x01\x02" + part.tobytes() for part in np.split(numbers, ends))
+
+
 def with_dictionary(frame: bytes, number: int) -> bytes:
     """A frame whose header states a dictionary ID, of one byte."""
     assert frame[4] & 3 == 0
@@ -102,7 +109,7 @@ def _headers() -> Iterator[Malformed]:
     for major in (0, 2):
         yield Malformed(f"major-{major}", container(rows(), major=major), "header", "major_version")
     yield Malformed("sections-none", container([]), "header", "section_count")
-    many = [Row(b"X%03d" % i, b"", flags=0) for i in range(65)]
+    many = [*rows(), *(Row(b"X%03d" % i, b"", flags=0) for i in range(63))]
     yield Malformed("sections-many", container(many), "header", "section_count")
     yield Malformed("header-checksum", container(rows(), checksum=1), "header", "checksum")
 
@@ -137,6 +144,10 @@ def _sections() -> Iterator[Malformed]:
         whole = [*rows(meta({8: [{1: "a"}]})), Row(b"TXTR", b"1234")]
         name = f"{code.decode().lower()}-ancillary"
         yield Malformed(name, container(change(whole, code, flags=0)), code.decode(), "flags")
+    start, sizes = 58, [len(row.payload) for row in two]
+    turned = change(change(two, b"META", offset=start + sizes[1]), b"NETS", offset=start)
+    file = container(turned)[:start] + two[1].payload + two[0].payload
+    yield Malformed("payload-order", file, "META", "offset")
     wrong = container(change(two, b"META", checksum=5))
     yield Malformed("meta-checksum", wrong, "META", "checksum")
     unknown = [*two, Row(b"ZZZZ", b"abc", flags=0, checksum=5)]
@@ -157,14 +168,14 @@ def _sections() -> Iterator[Malformed]:
 
 
 def _packings() -> Iterator[Malformed]:
-    content = nets()
-    packed = squeezed(content)
+    content = meta({10: {"note": "again " * 30}})
+    packed, noisy = squeezed(content), noise()
     checked = zstandard.ZstdCompressor(write_checksum=True).compress(content)
     unsized = zstandard.ZstdCompressor(write_content_size=False).compress(content)
     cases = {
         "zstd-noise": (b"\xff" * 8, len(content), "payload"),
         "zstd-cut": (packed[:-1], len(content), "payload"),
-        "zstd-two-frames": (squeezed(bytes(999)) * 2, 999, "payload"),
+        "zstd-two-frames": (packed + b"\x50\x2a\x4d\x18\0\0\0\0", len(content), "payload"),
         "zstd-skippable": (b"\x50\x2a\x4d\x18\x04\0\0\0abcd", len(content), "content_size"),
         "zstd-dictionary": (with_dictionary(packed, 7), len(content), "payload"),
         "zstd-checksum-wrong": (checked[:-1] + bytes([checked[-1] ^ 1]), len(content), "payload"),
@@ -174,10 +185,13 @@ def _packings() -> Iterator[Malformed]:
     }
     for name, (payload, decoded, field) in cases.items():
         claim = {"payload": payload, "flags": 3, "decoded": decoded}
-        yield Malformed(name, container(change(rows(), b"NETS", **claim)), "NETS", field)
-    bomb = squeezed(bytes(2**25 + 1))
-    claim = {"payload": bomb, "flags": 3, "decoded": 2**25 + 1}
-    file = container(change(rows(), b"NETS", **claim))
+        yield Malformed(name, container(change(rows(), b"META", **claim)), "META", field)
+    claim = {"payload": squeezed(noisy), "flags": 3, "decoded": len(noisy)}
+    longer = container(change(rows(), b"NETS", **claim))
+    yield Malformed("zstd-longer", longer, "NETS", "decoded_length")
+    size = 2**25 + 1
+    bomb = Row(b"TXTR", squeezed(bytes(size)), flags=3, decoded=size)
+    file = container([*rows(meta({8: [{1: "a"}]})), bomb])
     yield Malformed("zstd-bomb", file, "header", "decoded_length")
 
 
@@ -187,26 +201,29 @@ def _encodings() -> Iterator[Malformed]:
         "msgpack-empty": (b"", "msgpack"),
         "msgpack-cut": (good[:-1], "msgpack"),
         "msgpack-extra": (good + b"\x01", "msgpack"),
-        "msgpack-nil": (b"\x81\x01\xc0", "type"),
-        "msgpack-extension": (b"\x81\x01\xd4\x05\x00", "msgpack"),
-        "msgpack-not-utf8": (b"\x81\x01\xa1\xff", "msgpack"),
-        "msgpack-key-order": (b"\x82" + good[-4:-1] + good[-1:] + good[1:22], "msgpack"),
-        "msgpack-key-twice": (b"\x82\x01\x01\x01\x01", "msgpack"),
+        "msgpack-nil": (_instead("material", b"\xc0"), "type"),
+        "msgpack-extension": (_instead("material", b"\xd4\x05\x00"), "msgpack"),
+        "msgpack-not-utf8": (_instead("text", b"\xa1\xff"), "msgpack"),
+        "msgpack-key-order": (b"\x83" + good[23:-4] + good[1:23] + good[-4:], "msgpack"),
+        "msgpack-key-twice": (b"\x84" + good[1:23] + good[1:], "msgpack"),
         "msgpack-key-map": (b"\x81\x80\x01", "msgpack"),
-        "msgpack-long-integer": (b"\x81\x03\xcc\x02", "msgpack"),
-        "msgpack-long-map": (b"\xde\x00\x01\x01\x01", "msgpack"),
-        "msgpack-long-str": (b"\x81\xd9\x01a\x01", "msgpack"),
-        "msgpack-long-bin": (b"\x81\x05\xc5\x00\x01\x00", "msgpack"),
-        "msgpack-long-array": (b"\x81\x01\xdc\x00\x01\x01", "msgpack"),
-        "msgpack-signed-positive": (b"\x81\x03\xd0\x02", "msgpack"),
-        "msgpack-long-negative": (b"\x81\x03\xd1\xff\x80", "msgpack"),
-        "msgpack-wide-float": (b"\x81\x01\xcb" + struct.pack(">d", 0.5), "msgpack"),
-        "msgpack-nan": (b"\x81\x01\xca" + struct.pack(">f", float("nan")), "number"),
-        "msgpack-infinity": (b"\x81\x01\xca" + struct.pack(">f", float("inf")), "number"),
+        "msgpack-long-integer": (_instead("width", b"\xcc\x02"), "msgpack"),
+        "msgpack-long-map": (
+            b"\xde\x00" + good[:1].replace(b"\x83", b"\x03") + good[1:],
+            "msgpack",
+        ),
+        "msgpack-long-str": (_instead("text", b"\xd9\x01a"), "msgpack"),
+        "msgpack-long-bin": (_instead("flags", b"\xc5\x00\x01\x00"), "msgpack"),
+        "msgpack-long-array": (_instead("widths", b"\xdc\x00\x01\x02"), "msgpack"),
+        "msgpack-signed-positive": (_instead("width", b"\xd0\x02"), "msgpack"),
+        "msgpack-long-negative": (_instead("text", b"\xd1\xff\x80"), "msgpack"),
+        "msgpack-wide-float": (_instead("x", b"\xcb" + struct.pack(">d", 0.5)), "msgpack"),
+        "msgpack-nan": (_instead("x", b"\xca" + struct.pack(">f", float("nan"))), "number"),
+        "msgpack-infinity": (_instead("x", b"\xca" + struct.pack(">f", float("inf"))), "number"),
         "msgpack-deep": (b"\x81\x01" + b"\x91" * 8 + b"\x01", "depth"),
         "msgpack-very-deep": (b"\x91" * 4000, "msgpack"),
         "msgpack-array-bomb": (b"\x81\x01\xdd\xff\xff\xff\xff", "msgpack"),
-        "msgpack-long-text": (b"\x81\x01\xda\x04\x01" + b"a" * 1025, "msgpack"),
+        "msgpack-long-text": (_instead("text", b"\xda\x04\x01" + b"a" * 1025), "msgpack"),
         "msgpack-not-a-map": (b"\x90", "document"),
     }
     for name, (data, field) in cases.items():
@@ -217,6 +234,22 @@ def _encodings() -> Iterator[Malformed]:
         claim = {"payload": squeezed(data), "flags": 3, "decoded": len(data)}
         file = container(change(rows(), b"META", **claim))
         yield Malformed(f"msgpack-{name}", file, "META", field)
+
+
+def _instead(what: str, encoded: bytes) -> bytes:
+    """META of a sound file but for the encoding of one value."""
+    sound = meta({10: {"note": 7}, 7: [{1: "b"}]})
+    values = {
+        "x": b"\xca\0\0\0\0",
+        "widths": b"\x91\x02",
+        "width": b"\x02",
+        "flags": b"\xc4\x01\0",
+        "text": b"\x07",
+        "material": b"\xa1b",
+    }
+    before = {"width": b"\x81\x01\x91", "text": b"note"}.get(what, b"")
+    assert before + values[what] in sound
+    return sound.replace(before + values[what], before + encoded, 1)
 
 
 _FIELDS: dict[str, tuple[dict[int, Any], str]] = {
@@ -294,8 +327,10 @@ def _fields() -> Iterator[Malformed]:
     cases = dict(_FIELDS)
     for name, (fields, field) in _SPECS.items():
         cases[name] = ({2: {1: fields}}, f"networks.sdf.{field}")
+    wider = {"mirror-side-alone": 8, "sdf-conditioned": 8, "embedding-alone": 14}
     for name, (changes, field) in cases.items():
-        yield Malformed(name, container(rows(meta(changes))), "META", field)
+        data = nets(dense(wider.get(name, 6)))
+        yield Malformed(name, container(rows(meta(changes), data)), "META", field)
 
 
 def _materials() -> Iterator[Malformed]:
@@ -335,7 +370,8 @@ def _materials() -> Iterator[Malformed]:
         "texture-key-unknown": ([{1: "a", 4: 1}], "keys"),
     }
     for name, (listed, field) in textures.items():
-        yield Malformed(name, container(rows(meta({8: listed}))), "META", f"textures.0.{field}")
+        file = container([*rows(meta({8: listed})), Row(b"TXTR", b"12")])
+        yield Malformed(name, file, "META", f"textures.0.{field}")
 
 
 def _relations() -> Iterator[Malformed]:
@@ -347,6 +383,11 @@ def _relations() -> Iterator[Malformed]:
         "map-texture-unknown": ({7: [{9: {1: {}}}]}, nets(), "materials.0.maps.base_color.texture"),
         "chart-network-missing": ({3: 2, 5: b"\0"}, nets(), "networks.chart"),
         "chart-network-unasked": ({2: {1: spec, 2: spec}}, many, "networks.chart"),
+        "openings-with-uv": (
+            {3: 2, 5: None, 11: True, 2: {1: spec, 2: spec, 3: spec}},
+            b"".join(dense(n) for n in (*TENSOR_SIZES, 6, 2, 4, 2, 6, 2, 4, 2)),
+            "document.openings",
+        ),
         "uv-network-missing": ({5: None}, nets(), "networks.uv"),
     }
     for name, (changes, data, field) in cases.items():
@@ -361,7 +402,7 @@ def _tensors() -> Iterator[Malformed]:
         "coding-reserved": (b"\x08" + dense(6)[1:], "coding"),
         "wide-tag-cut": (b"\0", "coding"),
         "wide-tag-reserved": (b"\0\0\0\x04", "coding"),
-        "wide-tag-short-enough": (b"\0\x06\0\x03", "coding"),
+        "wide-tag-short-enough": (b"\0\x01\0\0" + dense(6)[1:], "coding"),
         "wide-tag-coding-unknown": (b"\0\x08\0\0", "coding"),
         "wide-tag-step-unknown": (b"\0\x01\x08\0\0\x03" + bytes(6), "step"),
         "wide-tag-joined-dense": (b"\0\x01\0\x04", "joined"),
@@ -396,7 +437,7 @@ def _sparse() -> Iterator[Malformed]:
     one = b"\x02\0\x3c"
     cases = {
         "coo-count": (b"\x02\x07", "count"),
-        "coo-count-long": (b"\x02\x80\0", "count"),
+        "coo-count-long": (b"\x02\x80\0\x02", "count"),
         "coo-count-endless": (b"\x02" + b"\x80" * 6, "count"),
         "coo-row": (b"\x02\x02\x01\x01\0\0" + one + b"\0\x3c", "row"),
         "coo-row-step": (b"\x02\x01\x02\0" + one, "row_step"),
