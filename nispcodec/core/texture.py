@@ -97,14 +97,25 @@ def reencode(textures: Iterable[Texture], kind: str, quality: int) -> tuple[Text
     JPEG holds no transparency: images that have some stay as they are. Names get the suffix of
     their kind and stay different. Raises MeshError as `decode_image` does.
     """
-    again: list[Texture] = []
-    for texture in textures:
-        fresh, taken = _reencoded(texture, kind, quality), {other.name for other in again}
-        path, tries = PurePath(fresh.name), count(2)
-        while fresh.name in taken:
-            fresh = replace(fresh, name=f"{path.stem}-{next(tries)}{path.suffix}")
-        again.append(fresh)
-    return tuple(again)
+    again = [_reencoded(texture, kind, quality) for texture in textures]
+    names = distinct_names([texture.name for texture in again])
+    return tuple(replace(texture, name=name) for texture, name in zip(again, names, strict=True))
+
+
+def distinct_names(names: Sequence[str]) -> list[str]:
+    """The file names, a number added where one is taken: wood.png, wood-2.png.
+
+    Names that differ in case alone are taken for the same: they are on some disks.
+    """
+    found: list[str] = []
+    taken: set[str] = set()
+    for name in names:
+        path, tries, free = PurePath(name), count(2), name
+        while free.casefold() in taken:
+            free = f"{path.stem}-{next(tries)}{path.suffix}"
+        found.append(free)
+        taken.add(free.casefold())
+    return found
 
 
 def _reencoded(texture: Texture, kind: str, quality: int) -> Texture:

@@ -11,6 +11,7 @@ from nispcodec.core.errors import MeshError
 from nispcodec.core.texture import (
     base_color,
     decode_image,
+    distinct_names,
     image_size,
     linear_to_srgb,
     reencode,
@@ -44,6 +45,12 @@ def test_the_size_is_that_of_the_pixels(kind: str) -> None:
 def test_the_size_of_what_is_no_image() -> None:
     with pytest.raises(MeshError, match=r"broken\.png"):
         image_size(Texture("broken.png", b"no image", "image/png"))
+
+
+def test_names_that_are_taken_get_a_number() -> None:
+    names = ["a.png", "b.png", "A.PNG", "a.png", "a-2.png", "c"]
+    distinct = ["a.png", "b.png", "A-2.PNG", "a-3.png", "a-2-2.png", "c"]
+    assert distinct_names(names) == distinct
 
 
 def test_origin_is_bottom_left() -> None:
