@@ -1,7 +1,7 @@
 """Writes `sample.glb`, an octahedron as triangles, with the same as a `.nisp` inside.
 
-`python docs/gltf/sample.py`. The signed distance (|x| + |y| + |z| - 1) / sqrt(3) is a network of one
-rectified neuron, as `mirror` gives it the absolute values of the coordinates.
+`python docs/gltf/sample.py`. The signed distance (|x| + |y| + |z| - 1) / sqrt(3) is a network of
+one rectified neuron, as `mirror` gives it the absolute values of the coordinates.
 """
 
 from __future__ import annotations

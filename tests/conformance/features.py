@@ -426,6 +426,7 @@ def swapping_profile() -> bytes:
     places = {bytes(profile[at : at + 4]): at for at in range(132, 132 + 12 * count, 12)}
     red, blue = places[b"rXYZ"], places[b"bXYZ"]
     profile[red : red + 4], profile[blue : blue + 4] = b"bXYZ", b"rXYZ"
+    profile[24:36] = struct.pack(">6H", 2026, 1, 1, 0, 0, 0)  # else the time of day
     return bytes(profile)
 
 
