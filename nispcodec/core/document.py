@@ -54,6 +54,17 @@ class ChartTable:
 
 
 @dataclass(frozen=True)
+class StoredSection:
+    """An ancillary section as its payload stands in a file: it is unknown, and not looked into.
+
+    decoded_length  bytes of the content of a packed payload, None where the payload is the content
+    """
+
+    payload: bytes
+    decoded_length: int | None = None
+
+
+@dataclass(frozen=True)
 class Field:
     """The part of an asset that networks hold: its SDF, its charts, its UVs.
 
@@ -71,36 +82,38 @@ class Field:
 
     def __post_init__(self) -> None:
         k = len(self.charts)
-        _demand("charts", 1 <= k <= MAX_CHARTS, f"1 to {MAX_CHARTS}", k)
+        _demand("document.charts", 1 <= k <= MAX_CHARTS, f"1 to {MAX_CHARTS}", k)
         if self.charts.openings:
-            _demand("openings", k > 1, "two charts or more", k)
-            _demand("openings", not self.charts.has_uv[-1], "a last chart without UV", "UV")
-        _demand("sdf outputs", self.sdf.spec.outputs == 1, 1, self.sdf.spec.outputs)
+            _demand("document.openings", k > 1, "two charts or more", k)
+            _demand(
+                "document.openings", not self.charts.has_uv[-1], "a last chart without UV", "UV"
+            )
+        _demand("networks.sdf", self.sdf.spec.outputs == 1, 1, self.sdf.spec.outputs)
         self._check_chart(k)
         self._check_uv(k)
 
     def _check_chart(self, k: int) -> None:
         found = f"{k} charts"
         _demand(
-            "chart network",
+            "networks.chart",
             (self.chart is not None) == (k > 1),
             "one for two charts or more",
             found,
         )
         if self.chart is not None:
-            _demand("chart outputs", self.chart.spec.outputs == k, k, self.chart.spec.outputs)
+            _demand("networks.chart", self.chart.spec.outputs == k, k, self.chart.spec.outputs)
 
     def _check_uv(self, k: int) -> None:
         dressed = int(self.charts.has_uv.sum())
         found = f"{dressed} charts with UV"
         _demand(
-            "uv network", (self.uv is not None) == (dressed > 0), "one when a chart has UV", found
+            "networks.uv", (self.uv is not None) == (dressed > 0), "one when a chart has UV", found
         )
         if self.uv is not None:
-            _demand("uv outputs", self.uv.spec.outputs == 2, 2, self.uv.spec.outputs)
+            _demand("networks.uv", self.uv.spec.outputs == 2, 2, self.uv.spec.outputs)
             conditioned = self.uv.spec.conditioning != "none"
             expected = k if conditioned else 0
-            _demand("uv charts", self.uv.spec.charts == expected, k, self.uv.spec.charts)
+            _demand("networks.uv", self.uv.spec.charts == expected, k, self.uv.spec.charts)
 
     @property
     def networks(self) -> dict[str, Network]:
@@ -126,30 +139,40 @@ class Document:
     field: Field | None = None
     meshes: tuple[MeshPart, ...] = ()
     info: Mapping[str, str | int | float | bool] = default(default_factory=dict)
-    extra: Mapping[str, bytes] = default(default_factory=dict)
+    extra: Mapping[str, StoredSection] = default(default_factory=dict)
 
     def __post_init__(self) -> None:
-        _demand("frame", self.frame.radius > 0, "a positive radius", self.frame.radius)
-        _demand("parts", bool(self.meshes) or self.field is not None, "a field or a mesh", "none")
-        _demand("materials", len(self.materials) > 0, "at least one", 0)
+        _demand("document.frame", self.frame.radius > 0, "a positive radius", self.frame.radius)
+        _demand(
+            "document.parts",
+            bool(self.meshes) or self.field is not None,
+            "a field or a mesh",
+            "none",
+        )
+        _demand("document.materials", len(self.materials) > 0, "at least one", 0)
         self._check_charts()
         self._check_maps()
 
     def _check_charts(self) -> None:
         materials = self.chart_materials
-        _demand("charts", 1 <= len(materials) <= MAX_CHARTS, f"1 to {MAX_CHARTS}", len(materials))
         _demand(
-            "chart materials",
+            "document.charts",
+            1 <= len(materials) <= MAX_CHARTS,
+            f"1 to {MAX_CHARTS}",
+            len(materials),
+        )
+        _demand(
+            "document.chart_materials",
             materials.min() >= 0 and materials.max() < len(self.materials),
             f"0 to {len(self.materials) - 1}",
             f"{materials.min()} to {materials.max()}",
         )
 
     def _check_maps(self) -> None:
-        for material in self.materials:
+        for number, material in enumerate(self.materials):
             for slot, used in material.maps.items():
                 _demand(
-                    f"{material.name}.{slot}",
+                    f"materials.{number}.maps.{slot}.texture",
                     0 <= used.texture < len(self.textures),
                     f"a texture below {len(self.textures)}",
                     used.texture,

@@ -71,9 +71,9 @@ class NetworkSpec:
         _member("conditioning", self.conditioning, CONDITIONINGS)
         _member("activation", self.activation, ACTIVATIONS)
         _member("output", self.output, OUTPUTS)
-        _within("hidden layers", len(self.hidden), 1, MAX_HIDDEN_LAYERS)
+        _within("hidden", len(self.hidden), 1, MAX_HIDDEN_LAYERS)
         for width in self.hidden:
-            _within("hidden width", width, 1, MAX_WIDTH)
+            _within("hidden", width, 1, MAX_WIDTH)
         _within("outputs", self.outputs, 1, MAX_CHARTS)
         fourier, conditioned = self.encoding == "fourier", self.conditioning != "none"
         _within("levels", self.levels, int(fourier), 16 if fourier else 0)

@@ -28,10 +28,10 @@ class EncodeConfig:
     """How to encode.
 
     preset          one of `PRESETS`
-    geometry        "auto": as networks or as triangles, whichever is smaller at equal errors;
-                    "field": as networks; "mesh": as triangles
     seed            of everything random: the same input, seed and engine give the
                     same bytes on one kind of processor, with any number of threads
+    geometry        "auto": as networks or as triangles, whichever is smaller at equal errors;
+                    "field": as networks; "mesh": as triangles
     engine          what trains: "native", "torch"; "auto": native wherever that can
     device          "auto", "cpu", "cuda", "cuda:1"; CUDA trains with torch
     threads         cores to use; 0: all
@@ -49,8 +49,8 @@ class EncodeConfig:
     """
 
     preset: str = "balanced"
-    geometry: str = "auto"
     seed: int = 0
+    geometry: str = "auto"
     engine: str = "auto"
     device: str = "auto"
     threads: int = 0

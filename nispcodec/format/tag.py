@@ -20,7 +20,7 @@ _WIDE = b"\0"
 
 @dataclass(frozen=True)
 class Tag:
-    """What a record begins with.
+    """The begin of a record: coding, step, tensors.
 
     coding   number of the coding
     form     0 without step, else the number of its form, of `STEPS`

@@ -111,7 +111,11 @@ class _Forward:
         self._own = local()
 
     def __call__(self, points: Float32Array, charts: Int32Array | None) -> Float32Array:
-        """Outputs (outputs, n) at points (n, 3)."""
+        """Outputs (outputs, n) at points (n, 3); NaN and infinities where they overflow."""
+        with np.errstate(over="ignore", invalid="ignore"):
+            return self._outputs(points, charts)
+
+    def _outputs(self, points: Float32Array, charts: Int32Array | None) -> Float32Array:
         activations = self._input(points, charts)
         buffers = self._buffers(2, len(points))
         for index, layer in enumerate(self.layers[:-1]):

@@ -113,7 +113,9 @@ def test_the_probe_decides_the_width() -> None:
     def easier(tasks: list[Task], listen: Listener) -> Networks:
         return by_law(tasks, lambda update: listen(replace(update, error=update.error / 2)))
 
-    widths = [fit_with_preset(fitting(fit), always)["sdf"].spec.hidden[0] for fit in (by_law, easier)]
+    widths = [
+        fit_with_preset(fitting(fit), always)["sdf"].spec.hidden[0] for fit in (by_law, easier)
+    ]
     assert widths[0] > widths[1]
 
 

@@ -16,7 +16,7 @@ from nispcodec.core.asset import (
     Texture,
     TextureMap,
 )
-from nispcodec.core.document import ChartTable, Document, Field, Frame
+from nispcodec.core.document import ChartTable, Document, Field, Frame, StoredSection
 from nispcodec.core.network import ACTIVATIONS, CONDITIONINGS, OUTPUTS, Network, NetworkSpec
 from nispcodec.core.slots import SLOTS
 from nispcodec.format.constants import SECTIONS
@@ -84,7 +84,7 @@ def full() -> Document:
             half_thickness=0.01,
         ),
         info={"tool": "test", "seed": 7, "seconds": 0.1, "ok": True, "preset": "best"},
-        extra={"ZZZZ": b"from the future"},
+        extra={"ZZZZ": StoredSection(b"from the future")},
     )
 
 
@@ -92,6 +92,11 @@ _NUMBERS = st.floats(-1e6, 1e6, width=32)
 _NAMES = st.text(st.characters(exclude_categories=["Cc", "Cs"]), max_size=12)
 _FILES = st.from_regex(r"[a-z][a-z0-9 ]{0,8}\.(png|jpg)", fullmatch=True)
 _UNIT = st.floats(0, 1)
+_IMAGES = st.binary(min_size=1, max_size=40)
+_STORED = st.one_of(
+    st.builds(StoredSection, st.binary(max_size=40)),
+    st.builds(StoredSection, st.binary(max_size=40), st.integers(41, 2**20)),
+)
 
 
 def maps(textures: int) -> st.SearchStrategy[dict[str, TextureMap]]:
@@ -172,7 +177,9 @@ def documents(draw: st.DrawFn) -> Document:
         frame=Frame(draw(st.tuples(_NUMBERS, _NUMBERS, _NUMBERS)), draw(st.floats(1e-6, 1e6))),
         materials=tuple(draw(materials(len(names))) for _ in range(kinds)),
         textures=tuple(
-            Texture(name, draw(st.binary(max_size=40)), draw(st.sampled_from(MIME_TYPES)))
+            Texture(
+                name, draw(st.binary(min_size=1, max_size=40)), draw(st.sampled_from(MIME_TYPES))
+            )
             for name in names
         ),
         field=Field(
@@ -183,7 +190,7 @@ def documents(draw: st.DrawFn) -> Document:
             half_thickness=draw(_UNIT),
         ),
         info=draw(st.dictionaries(_NAMES, scalars, max_size=4)),
-        extra=draw(st.dictionaries(unknown, st.binary(max_size=40), max_size=2)),
+        extra=draw(st.dictionaries(unknown, _STORED, max_size=2)),
     )
 
 

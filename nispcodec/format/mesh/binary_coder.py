@@ -21,10 +21,7 @@ LIMIT = 255
 RATES = tuple(int(65536 / (n + 2)) for n in range(LIMIT + 1))
 LEARNING = 10
 START = 20000
-<<<<<<< HEAD
-=======
 PRIORS = table()
->>>>>>> coder
 
 
 class BinaryCoder:

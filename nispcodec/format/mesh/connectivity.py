@@ -259,11 +259,7 @@ class Growth:
         back = coder.bit(behind < ahead, slots.BACK, 0, 0, 0)
         links = self._previous if back else self._next
         found = gate
-<<<<<<< HEAD
-        length = signed(coder, steps, slots.STEPS, 0, 0, 0, 0)
-=======
         length = signed(coder, steps, slots.STEPS, Context(0))
->>>>>>> coder
         if not 0 < length <= NEAR:
             raise FormatError(SECTION, "steps", f"1 to {NEAR}", length)
         for _ in range(length):

@@ -13,22 +13,6 @@ SIGN, DIGIT, UP, FURTHER_UP, DOWN = 0, 1, 2, 3, 20
 """Slots of a kind of number, counted from its first: of `FURTHER_UP` 16, of `DOWN` 24."""
 
 
-<<<<<<< HEAD
-def signed(
-    coder: BinaryCoder,
-    value: int,
-    slot: int,
-    expected: int,
-    general: int,
-    medium: int,
-    special: int,
-) -> int:
-    """An integer of up to 24 bits; `expected` is how long it should be, 0 to 24.
-
-    slot: the first of 64 slots; medium, special: contexts. Raises FormatError for a longer one.
-    """
-    length = _length(coder, abs(value).bit_length(), slot, expected, general, medium, special)
-=======
 class Context(NamedTuple):
     """What is known beside a number: how long it should be, and the contexts of the coder."""
 
@@ -41,7 +25,6 @@ class Context(NamedTuple):
 def signed(coder: BinaryCoder, value: int, slot: int, context: Context) -> int:
     """An integer of up to 24 bits; `slot` is the first of 64. Raises FormatError for longer."""
     length = _length(coder, abs(value).bit_length(), slot, context)
->>>>>>> coder
     if length == 0:
         return 0
     negative = coder.bit(value < 0, slot + SIGN, 0, context.medium, context.special)
@@ -55,40 +38,19 @@ def signed(coder: BinaryCoder, value: int, slot: int, context: Context) -> int:
     return -found if negative else found
 
 
-<<<<<<< HEAD
-def _length(
-    coder: BinaryCoder,
-    length: int,
-    slot: int,
-    expected: int,
-    general: int,
-    medium: int,
-    special: int,
-) -> int:
-    found = expected
-    if coder.bit(length > found, slot + 3, general, medium, special):
-        found += 1
-        step = 0
-        while coder.bit(length > found, slot + 4 + step, general, medium, special):
-=======
 def _length(coder: BinaryCoder, length: int, slot: int, context: Context) -> int:
     found, *contexts = context
     if coder.bit(length > found, slot + UP, *contexts):
         found += 1
         step = 0
         while coder.bit(length > found, slot + FURTHER_UP + step, *contexts):
->>>>>>> coder
             found += 1
             step = min(step + 1, STEPS_UP - 1)
             if found > LONGEST:
                 raise FormatError(SECTION, "number", f"at most {LONGEST} bits", "more")
         return found
     step = 0
-<<<<<<< HEAD
-    while found > 0 and coder.bit(length < found, slot + 20 + step, general, medium, special):
-=======
     while found > 0 and coder.bit(length < found, slot + DOWN + step, *contexts):
->>>>>>> coder
         found -= 1
         step += 1
     return found

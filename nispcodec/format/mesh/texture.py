@@ -18,12 +18,8 @@ from nispcodec.format.mesh.numbers import (
     signed,
 )
 from nispcodec.format.mesh.order import Hinges, visits
-<<<<<<< HEAD
-from nispcodec.format.mesh.positions import Vector, context_of_size, frac
-=======
 from nispcodec.format.mesh.positions import Vector
 from nispcodec.format.mesh.stacking import Pair, Stacking
->>>>>>> coder
 
 FINE = 10
 """Bits of a difference of positions: products of four stay below 2^53."""
@@ -48,23 +44,15 @@ class Guess(NamedTuple):
 
 
 class _Texture:
-    """Coordinates that are known, of nodes at their places, and which lie beside which."""
+    """Coordinates that are known, of nodes at their places."""
 
     def __init__(self, coder: BinaryCoder, places: list[Vector], bits: int) -> None:
         self._coder, self._places, self._bits = coder, places, bits
         self._top = (1 << bits) - 1
         self._last = -1
         self._flip = 0
-<<<<<<< HEAD
-        self._hits = 0
-        self._known: dict[Pair, int] = {}
-        self._order: list[Pair] = []
-        self._beyond: dict[tuple[Pair, Pair], list[Pair]] = {}
-        self._beside: dict[Pair, dict[Pair, int]] = {}
-=======
         self._stacking = Stacking(coder)
         # How long first edges of charts were in space and texture, the last ones most.
->>>>>>> coder
         self._far, self._wide = 1, 1
         self.found: list[Pair] = [(0, 0)] * len(places)
 
@@ -72,112 +60,6 @@ class _Texture:
         """The coordinates of one node."""
         stacking, found = self._stacking, self.found
         if hinges:
-<<<<<<< HEAD
-            found = self._repeated(hinges, wanted)
-            if found is None:
-                found = self._continued(node, hinges, wanted)
-        elif near >= 0:
-            found = self._second(node, near, wanted)
-        else:
-            found = self._first(wanted)
-        self.found[node] = found
-        self._last = node
-        if found not in self._known:
-            self._known[found] = len(self._order)
-            self._order.append(found)
-        for a, b, _ in hinges:
-            self._note(self.found[a], self.found[b], found)
-            self._note(found, self.found[a], self.found[b])
-            self._note(self.found[b], found, self.found[a])
-        ends = {v for a, b, _ in hinges for v in (a, b)} | ({near} if near >= 0 else set())
-        for other in ends:
-            length = self._apart(node, other)
-            self._beside.setdefault(found, {})[self.found[other]] = length
-            self._beside.setdefault(self.found[other], {})[found] = length
-
-    def _apart(self, one: int, other: int) -> int:
-        d = _minus(self._places[one], self._places[other])
-        return isqrt(_dot(d, d))
-
-    def _note(self, a: Pair, b: Pair, third: Pair) -> None:
-        self._beyond.setdefault((a, b) if a < b else (b, a), []).append(third)
-
-    def _repeated(self, hinges: Hinges, wanted: Pair) -> Pair | None:
-        """Coordinates that an earlier face of another chart had beyond the same edge."""
-        votes: dict[Pair, int] = {}
-        for a, b, c in hinges:
-            ua, ub = self.found[a], self.found[b]
-            own = self.found[c] if c >= 0 else None
-            for third in self._beyond.get((ua, ub) if ua < ub else (ub, ua), ()):
-                if third != own:
-                    votes[third] = votes.get(third, 0) + 1
-        if not votes:
-            return None
-        best = max(votes, key=lambda pair: (votes[pair], pair))
-        hit = self._coder.bit(wanted == best, slots.REPEATED, 0, self._hits, min(votes[best], 3))
-        self._hits = (self._hits << 1 | hit) & 7
-        return best if hit else None
-
-    def _first(self, wanted: Pair) -> Pair:
-        if self._order:
-            hit = self._coder.bit(wanted in self._known, slots.SEEN, 0, 0, 0)
-            if hit:
-                at = self._coder.below(self._known.get(wanted, 0), len(self._order), "uv")
-                return self._order[at]
-        expected = self.found[self._last] if self._last >= 0 else (self._top >> 1, self._top >> 1)
-        return self._code(wanted, expected, 1 << self._bits >> 1, 5)
-
-    def _second(self, node: int, near: int, wanted: Pair) -> Pair:
-        start = self.found[near]
-        length = self._apart(node, near)
-        beside = self._beside.get(start, {})
-        if beside:
-            hit = self._coder.bit(wanted in beside, slots.BESIDE, 0, 0, 0)
-            if hit:
-                ranked = sorted(beside, key=lambda pair: (abs(beside[pair] - length), pair))
-                rank = ranked.index(wanted) if wanted in beside else 0
-                at = signed(self._coder, rank, slots.RANK, 0, 0, 0, 0)
-                if not 0 <= at < len(ranked):
-                    raise FormatError(SECTION, "uv rank", f"below {len(ranked)}", at)
-                return ranked[at]
-        size = min(self._wide * length // self._far, 4 << self._bits)
-        du = signed(
-            self._coder,
-            wanted[0] - start[0],
-            slots.UV_START + 64,
-            size.bit_length(),
-            0,
-            frac(size),
-            0,
-        )
-        other = isqrt(max(size * size - du * du, 0))
-        down = self._coder.bit(wanted[1] < start[1], slots.DOWN, 0, 0, 0)
-        wants = abs(wanted[1] - start[1])
-        dv = other + signed(
-            self._coder,
-            wants - other,
-            slots.UV_START + 128,
-            (size >> 3).bit_length(),
-            0,
-            min(8 * other // (size + 1), 7),
-            frac(size),
-        )
-        found = start[0] + du, start[1] + (-dv if down else dv)
-        for value in found:
-            if not 0 <= value <= self._top:
-                raise FormatError(SECTION, "uv", f"0 to {self._top}", value)
-        if length:
-            self._far = self._far - self._far // 4 + 16 * length
-            self._wide = self._wide - self._wide // 4 + 16 * isqrt(du * du + dv * dv)
-        return found
-
-    def _continued(self, node: int, hinges: Hinges, wanted: Pair) -> Pair:
-        guesses = [self._guess(node, *hinge) for hinge in hinges]
-        whole = [guess for guess in guesses if guess.whole]
-        expected = _mean(whole) if whole else self._turned(guesses, wanted)
-        size = sum(self._length(a, b) for a, b, _ in hinges) // len(hinges)
-        return self._code(wanted, expected, size, min(len(whole), 3))
-=======
             sides = [(found[a], found[b], found[c] if c >= 0 else None) for a, b, c in hinges]
             made = stacking.beyond(sides, wanted) or self._continued(node, hinges, wanted)
         elif near >= 0:
@@ -193,7 +75,6 @@ class _Texture:
         ends = {each for a, b, _ in hinges for each in (a, b)} or ({near} - {-1})
         for end in sorted(ends):
             stacking.join(made, found[end], self._distance(node, end))
->>>>>>> coder
 
     def _distance(self, one: int, other: int) -> int:
         edge = _minus(self._places[one], self._places[other])
@@ -289,34 +170,7 @@ class _Texture:
                 du = over((over(u * part, square) - uc + ua) * height, other)
                 dv = over((over(v * part, square) - vc + va) * height, other)
                 return Guess(pu + du, pv + dv, True, (0, 0))
-<<<<<<< HEAD
-        return Guess(pu, pv, False, (_over(-v * height, square), _over(u * height, square)))
-
-    def _code(self, wanted: Pair, expected: Pair, size: int, sources: int) -> Pair:
-        length, fine = context_of_size(size)
-        slot = slots.UV_START if sources > 3 else slots.UV
-        before = 0
-        made = []
-        for axis in range(2):
-            guess = min(max(expected[axis], 0), self._top)
-            special = (before * 6 + sources) * 2 + axis
-            rest = signed(
-                self._coder,
-                wanted[axis] - guess,
-                slot,
-                length,
-                sources,
-                fine * 6 + sources,
-                special,
-            )
-            if not 0 <= guess + rest <= self._top:
-                raise FormatError(SECTION, "uv", f"0 to {self._top}", guess + rest)
-            made.append(guess + rest)
-            before = min(max(abs(rest).bit_length() - length, -3), 3) + 4
-        return made[0], made[1]
-=======
         return Guess(pu, pv, False, (over(-v * height, square), over(u * height, square)))
->>>>>>> coder
 
 
 def code(
