@@ -102,21 +102,21 @@ def by_meshoptimizer(corners: Corners, setting: Setting) -> tuple[bytes, Callabl
     columns = np.column_stack([positions, uvs, corners.materials]).astype(np.uint16)
     rows, inverse = np.unique(columns, axis=0, return_inverse=True)
     indices = inverse[corners.faces.ravel()].astype(np.uint32)
-    ordered, fetched = np.empty_like(indices), np.empty_like(rows)
+    rows = np.ascontiguousarray(rows)
+    ordered, fetched, size = np.empty_like(indices), np.empty_like(rows), rows[0].nbytes
     library.optimize_vertex_cache(ordered, indices, len(indices), len(rows))
-    used = library.optimize_vertex_fetch(
-        fetched, ordered, rows, len(ordered), len(rows), rows.strides[0]
-    )
+    used = library.optimize_vertex_fetch(fetched, ordered, rows, len(ordered), len(rows), size)
     parts = [
         library.encode_index_buffer(ordered, len(ordered), used),
-        library.encode_vertex_buffer(fetched[:used].copy(), used, rows.strides[0]),
+        library.encode_vertex_buffer(fetched[:used].copy(), used, size),
     ]
     frames = [zstandard.ZstdCompressor(LEVEL).compress(bytes(part)) for part in parts]
 
     def decode() -> None:
         first, second = (zstandard.ZstdDecompressor().decompress(frame) for frame in frames)
         library.decode_index_buffer(len(ordered), 4, first)
-        library.decode_vertex_buffer(used, rows.strides[0], second, dtype=np.dtype(np.uint16))
+        # Of one item a vertex: the binding allocates that many items, whatever their size.
+        library.decode_vertex_buffer(used, size, second, dtype=np.dtype((np.void, size)))
 
     return b"".join(frames), decode
 

@@ -11,10 +11,13 @@ from hypothesis import strategies as st
 from nispcodec.core.errors import FormatError
 from nispcodec.core.mesh_part import MeshPart
 from nispcodec.format.mesh import decode, encode
+from nispcodec.format.mesh.logistic import STRETCH
+from nispcodec.format.mesh.priors import SURE, table
 from tests.format import spec
 from tests.format.mesh.parts import box, grid, parts
 
-READ = spec.decoder()["read_mesh"]
+DECODER = spec.decoder()
+READ = DECODER["read_mesh"]
 ARRAYS = (
     *("positions", "faces", "uvs", "uv_faces", "face_charts"),
     *("chart_materials", "chart_has_uv", "creases", "sheet"),
@@ -43,6 +46,11 @@ def listed(value: Any) -> Any:
 def test_it_reads_what_we_write(made: list[MeshPart]) -> None:
     data = encode(tuple(made))
     assert listed(READ(data)) == [plain(each) for each in decode(data)]
+
+
+def test_its_tables() -> None:
+    assert {slot: (share << 8, SURE) for slot, share in DECODER["MESH_PRIORS"].items()} == table()
+    assert tuple(DECODER["MESH_STRETCH"]) == STRETCH
 
 
 def test_known_shapes() -> None:
