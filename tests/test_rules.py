@@ -213,14 +213,12 @@ TESTED_ELSEWHERE = {
     # Steps of the coding of a mesh part: each is said only where the others lead to it.
     "format/mesh/charts.py": "format/mesh/test_section.py",
     "format/mesh/edges.py": "format/mesh/test_section.py",
-    "format/mesh/connectivity.py": "format/mesh/test_section.py",
     "format/mesh/fields.py": "format/mesh/test_section.py",
-    "format/mesh/order.py": "format/mesh/test_section.py",
-    "format/mesh/placements.py": "format/mesh/test_section.py",
     "format/mesh/positions.py": "format/mesh/test_section.py",
     "format/mesh/texture.py": "format/mesh/test_section.py",
     "format/mesh/part.py": "format/mesh/test_section.py",
     # Tables.
+    "format/mesh/priors.py": "format/mesh/test_spec_decoder.py",
     "core/slots.py": "format/test_spec.py",
     "format/constants.py": "format/test_spec.py",
     "extract/config.py": "test_rules.py",

@@ -15,7 +15,8 @@ def encode(parts: tuple[MeshPart, ...]) -> bytes:
 
     Floats become float32. Vertices without faces are not kept, nor is which corners share a UV;
     charts that no edge connects come apart; vertices, faces, UVs and charts get the order of the
-    file. What was decoded encodes to the same bytes again.
+    file. What was decoded encodes to the same bytes again, where no edge has more than two faces;
+    of others, other faces may meet.
 
     Raises FormatError for what the format does not hold: too many faces, faces with fewer than
     three vertices, negative materials.
