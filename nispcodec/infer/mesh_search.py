@@ -8,13 +8,14 @@ from typing import Protocol
 
 import numpy as np
 
-from nispcodec.core.arrays import BoolArray, Float64Array, FloatArray, Int32Array
+from nispcodec.core.arrays import BoolArray, Float64Array, FloatArray, IndexArray, Int32Array
 from nispcodec.core.compiled import KernelError
 from nispcodec.infer.mesh_tree import MeshTree
 from nispcodec.infer.multipoles import multipoles
 from nispcodec.infer.native.mesh_kernel import MeshKernel
 from nispcodec.infer.numpy_mesh import NumpyMesh
 from nispcodec.infer.parallel import parallel_for
+from nispcodec.infer.space_order import space_order
 
 
 @dataclass(frozen=True)
@@ -23,6 +24,10 @@ class SearchConfig:
 
     kernel  whether the compiled kernel is used where there is one
     block   points at a time: enough that threads have little to hand out
+    large   a mesh of more triangles is not in a processor's cache all at once: points are asked
+            in an order in which neighbors follow each other, which takes 90 ns a point and saves
+            180,000 triangles half of the time or more, 5,000 as much as it takes
+    more    points at a time then
     small   points at a time in numpy: its arrays for so many fit into a processor's own cache
     rough   radii of a cluster away from which on it is taken as one (Barill et al. 2018), at first:
             winding numbers are wrong by up to 0.13 on the meshes tried
@@ -32,6 +37,8 @@ class SearchConfig:
 
     kernel: bool = True
     block: int = 4096
+    large: int = 20_000
+    more: int = 16_384
     small: int = 128
     rough: float = 1.25
     margin: float = 0.3
@@ -48,6 +55,7 @@ class MeshSearch:
         self, corners: Float64Array, sheet: BoolArray, config: SearchConfig = SearchConfig()
     ) -> None:
         self._config = config
+        self._large = len(corners) > config.large
         self._solid = bool((~sheet).any())
         self._engine = _engine(corners, sheet, config) if len(corners) else None
 
@@ -60,7 +68,9 @@ class MeshSearch:
             return faces, squared
 
         def search(block: slice) -> None:
-            faces[block], squared[block] = engine.closest(_exact(points[block]))
+            order = self._order(points[block])
+            found = engine.closest(_exact(points[block][order]))
+            faces[block][order], squared[block][order] = found
 
         self._in_blocks(search, len(points))
         return faces, squared
@@ -73,14 +83,21 @@ class MeshSearch:
             return inside
 
         def search(block: slice) -> None:
-            asked = _exact(points[block])
-            inside[block] = engine.inside(asked, config.rough, config.margin, config.exact)
+            order = self._order(points[block])
+            asked = _exact(points[block][order])
+            inside[block][order] = engine.inside(asked, config.rough, config.margin, config.exact)
 
         self._in_blocks(search, len(points))
         return inside
 
+    def _order(self, points: FloatArray) -> IndexArray | slice:
+        """How a block of points (n, 3) is asked."""
+        return space_order(points) if self._large else slice(None)
+
     def _in_blocks(self, run: Callable[[slice], None], count: int) -> None:
-        size = self._config.block if isinstance(self._engine, MeshKernel) else self._config.small
+        size = self._config.more if self._large else self._config.block
+        if not isinstance(self._engine, MeshKernel):
+            size = self._config.small
         parallel_for(run, [slice(start, start + size) for start in range(0, count, size)])
 
 

@@ -49,6 +49,16 @@ def test_answers_do_not_depend_on_the_other_points(config: SearchConfig) -> None
     np.testing.assert_array_equal(search.closest(points[5:6])[0], faces[5:6])
 
 
+def test_large_meshes_answer_as_small_ones() -> None:
+    corners = soup(300)
+    points = points_about(corners, 3000)
+    small = MeshSearch(corners, sheets(300))
+    large = MeshSearch(corners, sheets(300), SearchConfig(large=100, more=500))
+    for found, expected in zip(large.closest(points), small.closest(points), strict=True):
+        np.testing.assert_array_equal(found, expected)
+    np.testing.assert_array_equal(large.inside(points), small.inside(points))
+
+
 def test_memory_is_bounded_beyond_input_and_output() -> None:
     search = MeshSearch(soup(50), np.zeros(50, np.bool_), IN_NUMPY)
     points = np.random.default_rng(0).uniform(-1, 1, (30_000, 3)).astype(np.float32)
