@@ -26,7 +26,7 @@ def box() -> MeshForm:
 
 
 def test_a_nearer_surface_is_estimated_to_take_more_bytes(ball: MeshForm) -> None:
-    estimates = [ball.estimate(distance, 1e9) for distance in (3e-2, 1e-2, 4e-3)]
+    estimates = [ball.estimate(distance, 1e9) for distance in (7e-3, 4e-3, 1.5e-3)]
     assert estimates == sorted(set(estimates))
     assert ball.estimate(1e-12, 700.0) >= 700
 
@@ -55,9 +55,9 @@ def test_the_best_stays_within_both_limits(ball: MeshForm) -> None:
 
 
 def test_a_candidate_of_a_size_is_the_nearest_found(ball: MeshForm) -> None:
-    sizes = [ball.of_size(most).size for most in (300, 600, 1200)]
-    distances = [ball.of_size(most).errors.distance for most in (300, 600, 1200)]
-    assert [size <= most for size, most in zip(sizes, (300, 600, 1200), strict=True)] == [True] * 3
+    sizes = [ball.of_size(most).size for most in (400, 600, 1200)]
+    distances = [ball.of_size(most).errors.distance for most in (400, 600, 1200)]
+    assert [size <= most for size, most in zip(sizes, (400, 600, 1200), strict=True)] == [True] * 3
     assert distances == sorted(distances, reverse=True)
 
 
