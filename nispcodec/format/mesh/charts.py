@@ -1,4 +1,4 @@
-"""What holds for pieces of a surface: sheets, the charts' materials, whether they have UVs."""
+"""All that holds for pieces of a surface: sheets, the charts' materials, whether they have UVs."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ class Charts:
 
 
 def code(coder: BinaryCoder, joined: Int64Array, given: Given | None) -> Charts:
-    """The charts of a surface; `joined` are its twins but at seams."""
+    """The charts of a surface; `joined` are its twins but at seams. Raises FormatError."""
     faces, first = pieces(joined)
     charts = given.part.face_charts[given.faces[first]] if given else None
     wanted = [(True, 0)] * len(first)
