@@ -74,10 +74,16 @@ def code(coder: BinaryCoder, joined: Int64Array, given: Given | None) -> Charts:
 
 
 def _highest(given: Given) -> int:
-    """The highest material of charts and their copies. Raises FormatError for negative ones."""
+    """The highest material of charts and their copies.
+
+    Raises FormatError for negative ones, and for copies with other than one for each chart.
+    """
     part = given.part
     tables = [part.chart_materials]
     tables += [each.materials for each in part.placements if each.materials is not None]
+    charts = len(part.chart_materials)
+    if any(len(table) != charts for table in tables):
+        raise FormatError(SECTION, "placement materials", charts, [len(each) for each in tables])
     materials = np.stack(tables)[:, np.unique(part.face_charts)]
     if materials.min() < 0:
         raise FormatError(SECTION, "materials", "0 or more", materials.min())
