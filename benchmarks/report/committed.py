@@ -83,7 +83,11 @@ RESULTS = (
     CommittedResult("crossover.json", "benchmarks.studies.crossover", (*ROUND_TRIP, *RIVALS)),
     CommittedResult("decoder.json", "benchmarks.studies.decoder", ROUND_TRIP),
     CommittedResult("format.json", "benchmarks.studies.format", (*CORE, *FORMAT)),
+<<<<<<< HEAD
     CommittedResult("mesh_queries.json", "benchmarks.studies.mesh_queries", (*CORE, *INFER)),
+=======
+    CommittedResult("mesh_codings.json", "benchmarks.studies.mesh_codings", (*FORMAT, *RIVALS)),
+>>>>>>> coder
     CommittedResult(
         "pruning_or_quantizing.json",
         "benchmarks.studies.pruning_or_quantizing",
