@@ -44,10 +44,10 @@ from nispcodec.simplify.ladder import Candidate, Simplifier
 from nispcodec.simplify.search import best_for
 from nispcodec.simplify.triangles import Triangles, distinct_corners
 
-KEPT = (0.85, 0.7, 0.5, 0.35, 0.25, 0.18, 0.125, 0.0625, 0.03)
-BITS = ((9, 9), (10, 9), (10, 10), (11, 10), (11, 11), (12, 12))
+KEPT = (0.7, 0.5, 0.35, 0.25, 0.125, 0.0625)
+BITS = ((9, 9), (10, 10), (11, 11), (12, 12))
 # By the logarithm of bytes, from the rival's largest file to its smallest.
-PLACES = (0.25, 0.45, 0.65, 0.85)
+PLACES = (0.3, 0.55, 0.8)
 RESULTS = Path("benchmarks/results/mesh_parts.json")
 
 Point = dict[str, Any]
@@ -157,8 +157,15 @@ def shown(best: Candidate | None) -> Point | None:
     }
 
 
+def means(table: dict[str, list[Point]]) -> dict[str, Any]:
+    """Geometric means of the ratios: of each asset's, and of these."""
+    ratios = {name: [each["ratio"] for each in found] for name, found in table.items()}
+    found = {name: geometric_mean([each for each in some if each]) for name, some in ratios.items()}
+    return {"means": found, "mean": geometric_mean(list(found.values()))}
+
+
 def geometric_mean(ratios: list[float]) -> float:
-    """Of ratios above 0."""
+    """The geometric mean of ratios above 0."""
     return round(float(np.exp(np.mean(np.log(ratios)))), 3)
 
 
@@ -180,16 +187,10 @@ def main(assets: Path, names: tuple[str, ...], points: Path, output: Path) -> No
         rivals = kept_points(source, ours, points)
         table[source.name] = []
         for place in places(rivals):
-            found = duel(rivals, place, ours)
-            table[source.name].append(found)
-            click.echo(f"{source.name:<24}{found}")
-    means = {
-        name: geometric_mean([each["ratio"] for each in found if each["ratio"]])
-        for name, found in table.items()
-    }
-    every = geometric_mean(list(means.values()))
-    click.echo(f"{means}\ngeometric mean {every}")
-    write_result(output, {"commit": commit(), "assets": table, "means": means, "mean": every})
+            table[source.name].append(duel(rivals, place, ours))
+            click.echo(f"{source.name:<24}{table[source.name][-1]}")
+        write_result(output, {"commit": commit(), "assets": table, **means(table)})
+    click.echo(means(table))
 
 
 if __name__ == "__main__":
