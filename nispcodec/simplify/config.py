@@ -60,7 +60,7 @@ class FitConfig:
     samples: float = 12.0
     fewest: int = 8000
     most: int = 60000
-    sliding: float = 0.1
+    sliding: float = 0.005
     seam_weight: float = 0.5
     seam_sliding: float = 0.02
     curve_samples: float = 6.0
@@ -107,6 +107,9 @@ class SearchConfig:
     trials      face counts that are tried at most
     close       the search ends where the error is within this share of the one asked for
     slopes      of errors by faces, both as logarithms: the steepest and the flattest believed
+    uneven      how much farther from its limit the distance may be than the UVs, as a logarithm,
+                before finer positions are tried
+    fewer       the part of the faces that finer positions may save: that search begins between
     helping     a bit more of UVs helps where the UV error falls below this part
     uv_blur     UV error up to which UVs may be rounded at most, whatever is asked for: where the
                 mean is that of seams, what lies between them would be blurred; 1.5 pixels of 1,000
@@ -117,6 +120,8 @@ class SearchConfig:
     trials: int = 7
     close: float = 0.04
     slopes: tuple[float, float] = (3.0, 0.4)
+    uneven: float = 0.15
+    fewer: float = 0.7
     helping: float = 0.9
     uv_blur: float = 1.5e-3
     nearly_all: float = 0.6

@@ -25,6 +25,11 @@ class Goal:
         found = max(errors.distance, tiny) / self.distance, max(errors.uv, tiny) / self.uv
         return float(np.log(found[0])), float(np.log(found[1]))
 
+    def held_by_uv(self, candidate: Candidate, uneven: float) -> bool:
+        """Whether the UVs leave room in the distance: by this much, as a logarithm."""
+        far, wrong = self.excess(candidate.errors)
+        return wrong - far > uneven
+
     def met(self, candidate: Candidate) -> bool:
         """Whether both errors are small enough."""
         return candidate.errors.within(self.distance, self.uv)
@@ -40,12 +45,17 @@ def best_for(
     goal = Goal(distance, uv)
     bits, uv_bits = simplifier.bits_for(distance), simplifier.uv_bits_for(min(uv, config.uv_blur))
     found = _fewest_faces(simplifier, goal, bits, uv_bits, config)
-    good = [] if found is None else [_fewest_bits(simplifier, goal, *found, config)]
+    good = [] if found is None else [found]
+    if found is not None and goal.held_by_uv(found[1], config.uneven):
+        # Rounding moves seams: finer positions may do with fewer faces.
+        finer = _fewest_faces(simplifier, goal, bits + 1, uv_bits, config, found[0])
+        good += [] if finer is None else [finer]
     everything = len(simplifier.source.triangles)
+    candidates = [_fewest_bits(simplifier, goal, *each, config) for each in good]
     if found is None or found[0] > config.nearly_all * everything:
         whole = kept_whole(simplifier, distance, uv, config)
-        good += [] if whole is None else [whole]
-    return min(good, key=lambda each: each.size, default=None)
+        candidates += [] if whole is None else [whole]
+    return min(candidates, key=lambda each: each.size, default=None)
 
 
 def kept_whole(
@@ -71,13 +81,21 @@ def kept_whole(
 
 
 def _fewest_faces(
-    simplifier: Simplifier, goal: Goal, bits: int, uv_bits: int, config: SearchConfig
+    simplifier: Simplifier,
+    goal: Goal,
+    bits: int,
+    uv_bits: int,
+    config: SearchConfig,
+    enough: int | None = None,
 ) -> tuple[int, Candidate] | None:
-    """The fewest faces asked for that are good enough, and what came; all faces are not tried."""
+    """The fewest faces asked for that are good enough, and what came; all faces are not tried.
+
+    enough: faces that fewer are sought than.
+    """
     everything = len(simplifier.source.triangles)
-    bracket = _Bracket(config, float(everything))
+    bracket = _Bracket(config, float(enough or everything))
     best: tuple[int, Candidate] | None = None
-    wanted = bracket.first(config.first)
+    wanted = bracket.first(config.first if enough is None else round(config.fewer * enough))
     for _ in range(config.trials):
         asked = round(float(np.exp(wanted)))
         if asked >= everything:
