@@ -73,3 +73,10 @@ def test_uvs_are_not_blurred_where_seams_make_the_error() -> None:
     best = best_for(simplifier(ball()), 0.05, 0.5)
     assert best is not None
     assert best.uv_bits >= 8
+
+
+def test_errors_beyond_the_size_of_the_mesh_leave_something() -> None:
+    best = best_for(simplifier(ball(6)), 10.0, 10.0)
+    assert best is not None
+    assert best.faces >= 1
+    assert best.errors.distance < 10
