@@ -35,6 +35,7 @@ class SamplingConfig:
     texture_step        ... over this distance in UV, a few times as far as UV networks err
     chart_error_count   chart samples again where a wrong chart shows another color ...
     chart_neighbors     ... than as many samples around: those that a network may take it for
+    chart_looks         samples by which it is told how far the nearest of these are, at most
     closing_count       samples on surfaces that close openings ...
     closing_jitter      ... up to this far off them, as a network may put them
     least_count         UV samples that every patch gets, where networks have room for small ones
@@ -62,6 +63,7 @@ class SamplingConfig:
     texture_step: float = 2e-3
     chart_error_count: int = 125_000
     chart_neighbors: int = 16
+    chart_looks: int = 1000
     closing_count: int = 12_000
     closing_jitter: float = 5e-3
     least_count: int = 150
