@@ -28,7 +28,8 @@ def chart_error_weight(
 
     The mean, over the `neighbors` nearest samples and the sample itself among them, of the root
     mean square difference of color and alpha; neighbors on the sample's own chart count as 0.
-    By `looks` samples it is told how far the nearest are. Raises MeshError for a texture that does not decode.
+    By `looks` samples it is told how far the nearest are. Raises MeshError for a texture that does
+    not decode.
     """
     weight = np.zeros(len(samples))
     count = min(neighbors, len(samples))

@@ -5,7 +5,7 @@ Lengths are in the normalized frame (radius 1).
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 
 @dataclass(frozen=True)
@@ -69,3 +69,17 @@ class SamplingConfig:
     least_count: int = 150
     held_out_count: int = 20_000
     paper_count: int = 1_000_000
+
+    def shared(self, share: float) -> SamplingConfig:
+        """With this share of all samples that sine networks learn from; as many to judge them."""
+        counts = {name: max(1, round(share * getattr(self, name))) for name in _LEARNED_FROM}
+        return replace(self, **counts)
+
+
+_LEARNED_FROM = tuple(
+    f"{kind}_count"
+    for kind in (
+        *("near", "tight", "wide", "cube", "asymmetric", "thin", "near_surface"),
+        *("texture", "chart_error", "closing"),
+    )
+)

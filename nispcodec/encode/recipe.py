@@ -44,7 +44,7 @@ def encode(
     for warning in analysis.solid.warnings:
         progress(Progress(stage="charts and hidden walls", warning=f"{mesh.name}: {warning}"))
     progress(Progress(stage="samples"))
-    sampler = Sampler(analysis, config.seed, tuning.sampling)
+    sampler = Sampler(analysis, config.seed, tuning.sampling_of(config.preset))
     sets = (paper_training_sets if published else training_sets)(sampler)
 
     def document(networks: Mapping[str, Network]) -> Document:

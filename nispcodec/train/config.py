@@ -267,6 +267,10 @@ class TrainingBudget:
     mine_every   ... and at least one in so many steps
     w0_scale     first frequencies of the SDF, relative to SIREN's: a short fit needs lower ones, or
                  the SDF is flat for most of it
+    samples      share of the samples that are made: making them is a third of the time of a short
+                 fit, which sees each one twenty times even so
+    rounding     times the held-out error that rounding may cost before it is tried again, if that
+                 is more than `QuantizeConfig` says
     """
 
     steps: int
@@ -274,6 +278,8 @@ class TrainingBudget:
     minings: int
     mine_every: int
     w0_scale: float = 1.0
+    samples: float = 1.0
+    rounding: float = 1.0
 
 
 @dataclass(frozen=True)
@@ -340,7 +346,7 @@ class TrainConfig:
     )
     budgets: Mapping[str, TrainingBudget] = field(
         default_factory=lambda: {
-            "fast": TrainingBudget(9_000, 0.8, 3, 800, 0.7),
+            "fast": TrainingBudget(9_000, 0.8, 3, 800, 0.7, samples=0.5, rounding=1.25),
             "balanced": TrainingBudget(40_000, 1.0, 9, 2000),
             "best": TrainingBudget(200_000, 1.2, 15, 4000),
         }

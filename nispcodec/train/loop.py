@@ -170,7 +170,8 @@ class _Run:
         unrounded = Unrounded(
             self.task, self.layout, self.trainer, self.best, self.first, self.kept
         )
-        rise = config.slight if len(self.best) < config.large else config.notable
+        usual = config.slight if len(self.best) < config.large else config.notable
+        rise = max(usual, quantization.rise)
         absolute = self._absolute(quantization)
         spoiled = config.spoiled * max(before, config.unnoticed * self.task.objective.good)
         tries: list[tuple[float, Float32Array, Float64Array]] = []

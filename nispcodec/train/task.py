@@ -19,10 +19,13 @@ class Quantization:
                 it; where that is the loss' own, a share of what the fit is left with: so every
                 asset has a lambda of its own
     bit_budget  bits that all weights together take; 0: as lambda says
+    rise        times the held-out error that it may cost before it is tried again, if that is more
+                than `QuantizeConfig` says
     """
 
     lambda_: float
     bit_budget: float = 0.0
+    rise: float = 1.0
 
 
 @dataclass(frozen=True)

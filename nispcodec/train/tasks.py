@@ -98,7 +98,7 @@ def sine_tasks(
             rate = config.fine_rate if fine else learning.learning_rate
             minings = max(budget.minings, steps // budget.mine_every)
             schedule = replace(schedule, rate=rate, minings=minings)
-        quantization = Quantization(learning.lambda_, bit_budgets.get(name, 0.0))
+        quantization = Quantization(learning.lambda_, bit_budgets.get(name, 0.0), budget.rounding)
         task = _task(sets, name, spec, schedule, config)
         tasks.append(replace(task, quantization=quantization))
     return tasks
