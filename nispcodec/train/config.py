@@ -100,6 +100,12 @@ class LoopConfig:
     retries         at half the rate, from the best weights
     most_threads    of one fit: a batch has four lanes, more only wait
     useless         times a constant's error from which on a network is not worth writing
+    went_wrong      times the held-out error that the probe foresees from which on a fit went wrong:
+                    of 90 fits of seven assets all but one stayed below 0.9; that one, with
+                    twice its siblings' error, ended at 1.25
+    again_unnoticed share of a good error that is no reason to make a fit again
+    again_steps     share of the steps when it is made again
+    least_to_judge  times the steps of a probe from which on a fit has to do as well
     """
 
     warm_up: float = 0.15
@@ -114,6 +120,10 @@ class LoopConfig:
     retries: int = 4
     most_threads: int = 16
     useless: float = 4.0
+    went_wrong: float = 1.05
+    again_unnoticed: float = 0.02
+    again_steps: float = 0.5
+    least_to_judge: float = 2.0
 
 
 @dataclass(frozen=True)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
 
 from nispcodec.core.network import NetworkSpec
@@ -56,7 +57,8 @@ class Schedule:
 class Task:
     """Fit `spec` to `samples` by an objective, whose error on `held_out` says how good it is.
 
-    Without `quantization` the weights stay float32.
+    Without `quantization` the weights stay float32. `foreseen` is the held-out error that a fit of
+    this task should end below; infinite where nobody knows.
     """
 
     name: str
@@ -67,6 +69,7 @@ class Task:
     schedule: Schedule
     quantization: Quantization | None = None
     pruning: Pruning | None = None
+    foreseen: float = math.inf
     config: TrainConfig = field(default_factory=TrainConfig)
 
     @property
