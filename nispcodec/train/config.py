@@ -104,7 +104,7 @@ class LoopConfig:
                     of 90 fits of seven assets all but one stayed below 0.9; that one, with
                     twice its siblings' error, ended at 1.25
     again_unnoticed share of a good error that is no reason to make a fit again
-    again_steps     share of the steps when it is made again
+    again_steps     share of the steps when it is made again: with half of them it ended no better
     least_to_judge  times the steps of a probe from which on a fit has to do as well
     """
 
@@ -122,7 +122,7 @@ class LoopConfig:
     useless: float = 4.0
     went_wrong: float = 1.05
     again_unnoticed: float = 0.02
-    again_steps: float = 0.5
+    again_steps: float = 1.0
     least_to_judge: float = 2.0
 
 

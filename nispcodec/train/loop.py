@@ -40,7 +40,7 @@ def train(
 
     A run whose held-out error explodes goes on from its best weights at half the rate; where lower
     rates do not help, the best network so far is what there is, and a note says so. A run that
-    ended far worse than was foreseen is made again, shorter and from another seed, unless a `mask`
+    ended far worse than was foreseen is made again from another seed, unless a `mask`
     ties it to its initial weights; the better of the two stays. At the end the weights are rounded
     (`nispcodec.train.quantize`), if the task says how.
     Raises FitError for a network that is far worse than a constant, whose weights cannot be
@@ -54,18 +54,18 @@ def train(
 
 
 def _made_again(run: _Run, seed: int, engine: Engine) -> _Run:
-    """A shorter run of the same task, from the initial weights that are furthest from this seed's.
+    """Another run of the same task, from the initial weights that are furthest from this seed's.
 
     It is told as if all steps had been done before: they had.
     """
     task, config = run.task, run.config.loop
     steps = max(1, round(config.again_steps * task.schedule.steps))
-    short = replace(task, schedule=replace(task.schedule, steps=steps))
+    task_again = replace(task, schedule=replace(task.schedule, steps=steps))
 
     def heard(update: Progress) -> None:
         run.listen(replace(update, step=task.schedule.steps, steps=task.schedule.steps))
 
-    again = _Run(short, seed + (MAX_INIT_SEED + 1) // 2, engine, run.core, heard, None)
+    again = _Run(task_again, seed + (MAX_INIT_SEED + 1) // 2, engine, run.core, heard, None)
     again.fit()
     return again
 

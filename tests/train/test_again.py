@@ -53,17 +53,19 @@ def test_a_bad_start_is_seen_and_made_good(dead_start: None) -> None:
     assert {update.steps for update in told} == {600}
 
 
-def test_the_second_fit_takes_half_of_the_steps_and_the_better_one_stays() -> None:
+def test_the_second_fit_takes_its_share_of_the_steps_and_the_better_one_stays() -> None:
     task = sdf_task()
     first, second = run(task), run(replace(task, schedule=replace(task.schedule, steps=150)))
     assert error_of(first, task) < error_of(second, task)
-    twice = run(replace(task, foreseen=0.0, config=without_floor(task)))
+    twice = run(replace(task, foreseen=0.0, config=half_again(task)))
     assert twice.spec.init_seed == first.spec.init_seed == 0
     assert all(np.array_equal(twice.tensors[name], first.tensors[name]) for name in first.tensors)
 
 
-def without_floor(task: Task) -> TrainConfig:
-    return replace(task.config, loop=replace(task.config.loop, again_unnoticed=0.0))
+def half_again(task: Task) -> TrainConfig:
+    """Whatever the first fit reaches, half of the steps again."""
+    changed = replace(task.config.loop, again_unnoticed=0.0, again_steps=0.5)
+    return replace(task.config, loop=changed)
 
 
 @pytest.mark.parametrize("foreseen", [math.inf, 10.0])
