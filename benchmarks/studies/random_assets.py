@@ -1,9 +1,11 @@
 """Random assets through every preset: none may end in an error.
 
     python -m benchmarks.studies.random_assets [--count 50] [--share 0.1] [--presets fast,best]
+        [--write benchmarks/results/random_assets.json]
 
 Turned bodies of random profiles, closed or open, and wavy sheets; one to four in an asset, each
-with one or two charts. `--share` of a preset's steps, as whole fits of fifty assets take an hour.
+with one or two charts. `--share` of the samples, and of the steps of probes and presets, as whole
+fits of fifty assets take an hour.
 """
 
 from __future__ import annotations
@@ -11,12 +13,15 @@ from __future__ import annotations
 import time
 from collections.abc import Iterator
 from dataclasses import replace
+from pathlib import Path
 
 import click
 import numpy as np
 
 import nispcodec
-from benchmarks.measuring.result_file import Record, as_json
+from benchmarks.measuring.machine import commit, machine, versions
+from benchmarks.measuring.result_file import Record, as_json, write_result
+from benchmarks.measuring.target import Asked, Target
 from nispcodec import EncodeConfig, NispError, Progress, TexturedMesh
 from nispcodec.core.arrays import Float64Array, Int32Array
 from nispcodec.encode.config import Tuning
@@ -28,13 +33,24 @@ Surface = tuple[Float64Array, Float64Array]
 
 @click.command()
 @click.option("--count", default=50, show_default=True)
-@click.option("--share", default=0.1, show_default=True, help="Of the steps of a preset.")
+@click.option("--share", default=0.1, show_default=True, help="Of samples and steps.")
 @click.option("--presets", default="fast,balanced,best", show_default=True)
-def main(count: int, share: float, presets: str) -> None:
+@click.option("--write", type=click.Path(path_type=Path), help="The result file.")
+def main(count: int, share: float, presets: str, write: Path | None) -> None:
     """Encode them all; exits with 1 when one fails."""
+    where = {"commit": commit(), "machine": machine(), "versions": versions()}
     records = list(runs(count, share, presets.split(",")))
-    print(as_json({"encodes": records}))
-    raise SystemExit(any("error" in record for record in records))
+    failed = sum("error" in record for record in records)
+    result = where | {"share": share, "failed": failed, "encodes": records}
+    if write:
+        write_result(write, result)
+    print(as_json(result))
+    raise SystemExit(failed > 0)
+
+
+def asked(results: Record) -> Iterator[Asked]:
+    """No encode may fail."""
+    yield Asked("all", Target("encodes that failed", ("failed",), 0), results)
 
 
 def runs(count: int, share: float, presets: list[str]) -> Iterator[Record]:
@@ -65,13 +81,15 @@ def encoded(mesh: TexturedMesh, preset: str, seed: int, share: float) -> Record:
 
 
 def shortened(share: float) -> Tuning:
-    """The usual numbers, with a share of the steps."""
+    """The usual numbers, with a share of the samples and steps."""
     usual = Tuning()
     budgets = {
         name: replace(budget, steps=max(1, round(share * budget.steps)))
         for name, budget in usual.training.budgets.items()
     }
-    return replace(usual, training=replace(usual.training, budgets=budgets))
+    probe_steps = round(share * usual.training.probe_steps)
+    training = replace(usual.training, budgets=budgets, probe_steps=probe_steps)
+    return replace(usual, training=training, sampling=usual.sampling.shared(share))
 
 
 def random_asset(random: np.random.Generator) -> TexturedMesh:
