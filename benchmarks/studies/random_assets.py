@@ -35,11 +35,12 @@ Surface = tuple[Float64Array, Float64Array]
 @click.option("--count", default=50, show_default=True)
 @click.option("--share", default=0.1, show_default=True, help="Of samples and steps.")
 @click.option("--presets", default="fast,balanced,best", show_default=True)
+@click.option("--threads", default=0, help="Of an encode; 0: all. Few on a busy machine.")
 @click.option("--write", type=click.Path(path_type=Path), help="The result file.")
-def main(count: int, share: float, presets: str, write: Path | None) -> None:
+def main(count: int, share: float, presets: str, threads: int, write: Path | None) -> None:
     """Encode them all; exits with 1 when one fails."""
     where = {"commit": commit(), "machine": machine(), "versions": versions()}
-    records = list(runs(count, share, presets.split(",")))
+    records = list(runs(count, share, presets.split(","), threads))
     failed = sum("error" in record for record in records)
     result = where | {"share": share, "failed": failed, "encodes": records}
     if write:
@@ -53,17 +54,18 @@ def asked(results: Record) -> Iterator[Asked]:
     yield Asked("all", Target("encodes that failed", ("failed",), 0), results)
 
 
-def runs(count: int, share: float, presets: list[str]) -> Iterator[Record]:
+def runs(count: int, share: float, presets: list[str], threads: int = 0) -> Iterator[Record]:
     """A record for every asset and preset."""
     for number in range(count):
         mesh = random_asset(np.random.default_rng(number))
         for preset in presets:
-            found = encoded(mesh, preset, number, share)
+            config = EncodeConfig(preset, number, threads=threads)
+            found = encoded(mesh, config, share)
             click.echo(f"{number} {preset} {found}", err=True)
             yield {"asset": number, "preset": preset, **found}
 
 
-def encoded(mesh: TexturedMesh, preset: str, seed: int, share: float) -> Record:
+def encoded(mesh: TexturedMesh, config: EncodeConfig, share: float) -> Record:
     """What the encoder measured, its warnings and seconds; or the error."""
     notes: list[str] = []
 
@@ -73,7 +75,7 @@ def encoded(mesh: TexturedMesh, preset: str, seed: int, share: float) -> Record:
 
     started = time.monotonic()
     try:
-        model = nispcodec.encode(mesh, EncodeConfig(preset, seed), heard, shortened(share))
+        model = nispcodec.encode(mesh, config, heard, shortened(share))
     except NispError as error:
         return {"error": str(error)}
     seconds = round(time.monotonic() - started, 1)
