@@ -4,8 +4,8 @@
         [--write benchmarks/results/random_assets.json]
 
 Turned bodies of random profiles, closed or open, and wavy sheets; one to four in an asset, each
-with one or two charts. `--share` of the samples, and of the steps of probes and presets, as whole
-fits of fifty assets take an hour.
+with one or two charts. `--share` of a preset's samples and steps, as whole fits of fifty assets
+take an hour; probes are whole, or all assets would seem to be of fine detail.
 """
 
 from __future__ import annotations
@@ -89,8 +89,7 @@ def shortened(share: float) -> Tuning:
         name: replace(budget, steps=max(1, round(share * budget.steps)))
         for name, budget in usual.training.budgets.items()
     }
-    probe_steps = round(share * usual.training.probe_steps)
-    training = replace(usual.training, budgets=budgets, probe_steps=probe_steps)
+    training = replace(usual.training, budgets=budgets)
     return replace(usual, training=training, sampling=usual.sampling.shared(share))
 
 
