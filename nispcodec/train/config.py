@@ -101,8 +101,8 @@ class LoopConfig:
     most_threads    of one fit: a batch has four lanes, more only wait
     useless         times a constant's error from which on a network is not worth writing
     went_wrong      times the held-out error that the probe foresees from which on a fit went wrong:
-                    of 90 fits of seven assets all but one stayed below 0.9; that one, with
-                    twice its siblings' error, ended at 1.25
+                    of 98 fits of seven assets all but one stayed below 0.96; that one,
+                    with twice its siblings' error, ended at 1.25
     again_unnoticed share of a good error that is no reason to make a fit again
     again_steps     share of the steps when it is made again: with half of them it ended no better
     least_to_judge  times the steps of a probe from which on a fit has to do as well
