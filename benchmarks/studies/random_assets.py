@@ -11,7 +11,7 @@ take an hour; probes are whole, or all assets would seem to be of fine detail.
 from __future__ import annotations
 
 import time
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import replace
 from pathlib import Path
 
@@ -32,15 +32,18 @@ Surface = tuple[Float64Array, Float64Array]
 
 
 @click.command()
+@click.option("--first", default=0, show_default=True, help="Number of the first asset.")
 @click.option("--count", default=50, show_default=True)
 @click.option("--share", default=0.1, show_default=True, help="Of samples and steps.")
 @click.option("--presets", default="fast,balanced,best", show_default=True)
 @click.option("--threads", default=0, help="Of an encode; 0: all. Few on a busy machine.")
 @click.option("--write", type=click.Path(path_type=Path), help="The result file.")
-def main(count: int, share: float, presets: str, threads: int, write: Path | None) -> None:
+def main(
+    first: int, count: int, share: float, presets: str, threads: int, write: Path | None
+) -> None:
     """Encode them all; exits with 1 when one fails."""
     where = {"commit": commit(), "machine": machine(), "versions": versions()}
-    records = list(runs(count, share, presets.split(","), threads))
+    records = list(runs(range(first, first + count), share, presets.split(","), threads))
     failed = sum("error" in record for record in records)
     result = where | {"share": share, "failed": failed, "encodes": records}
     if write:
@@ -54,9 +57,11 @@ def asked(results: Record) -> Iterator[Asked]:
     yield Asked("all", Target("encodes that failed", ("failed",), 0), results)
 
 
-def runs(count: int, share: float, presets: list[str], threads: int = 0) -> Iterator[Record]:
+def runs(
+    numbers: Iterable[int], share: float, presets: list[str], threads: int = 0
+) -> Iterator[Record]:
     """A record for every asset and preset."""
-    for number in range(count):
+    for number in numbers:
         mesh = random_asset(np.random.default_rng(number))
         for preset in presets:
             config = EncodeConfig(preset, number, threads=threads)
