@@ -97,4 +97,11 @@ RESULTS = (
         (*TRAIN, *FORMAT),
     ),
     CommittedResult("rounding_loss.json", "benchmarks.studies.rounding_loss", ROUND_TRIP),
+    CommittedResult("training_step.json", "benchmarks.studies.training_step", ("nispcodec/train",)),
+    CommittedResult(
+        "preparation_time.json",
+        "benchmarks.studies.preparation_time",
+        (*CORE, "nispcodec/geometry", "nispcodec/dataset"),
+    ),
+    CommittedResult("random_assets.json", "benchmarks.studies.random_assets", ENCODE),
 )

@@ -163,17 +163,22 @@ def sample_texture(
     levels.
     """
     height, width = image.shape[:2]
+    # Texels by one index each: numpy takes thrice as long for a row and a column.
+    texels = image.reshape(height * width, -1)
     u, v = np.nan_to_num(np.asarray(uv, dtype=np.float64), posinf=0.0, neginf=0.0).T
     x, y = u * width, (1.0 - v) * height
     if filter == "nearest":
-        return image[_texel(np.floor(y), height, wrap[1]), _texel(np.floor(x), width, wrap[0])]
+        row, column = _texel(np.floor(y), height, wrap[1]), _texel(np.floor(x), width, wrap[0])
+        return texels.take(row * width + column, axis=0)
     left, top = np.floor(x - 0.5), np.floor(y - 0.5)
     columns = [_texel(left + step, width, wrap[0]) for step in (0, 1)]
-    rows = [_texel(top + step, height, wrap[1]) for step in (0, 1)]
+    rows = [_texel(top + step, height, wrap[1]) * width for step in (0, 1)]
     right = (x - 0.5 - left).astype(np.float32)[:, None]
     low = (y - 0.5 - top).astype(np.float32)[:, None]
-    above = _mix(image[rows[0], columns[0]], image[rows[0], columns[1]], right)
-    below = _mix(image[rows[1], columns[0]], image[rows[1], columns[1]], right)
+    above, below = (
+        _mix(texels.take(row + columns[0], axis=0), texels.take(row + columns[1], axis=0), right)
+        for row in rows
+    )
     return _mix(above, below, low)
 
 

@@ -60,7 +60,7 @@ def encode(
         chosen = choice.triangles(of_triangles)
         return NispModel(replace(chosen.document, info=measured(chosen, analysis, config)))
     progress(Progress(stage="samples"))
-    sampler = Sampler(analysis, config.seed, tuning.sampling)
+    sampler = Sampler(analysis, config.seed, tuning.sampling_of(config.preset))
     sets = (paper_training_sets if published else training_sets)(sampler)
     networks = fit(
         analysis, sets, config, tuning.training, engine, of_networks, choice.wants_field, progress
