@@ -7,6 +7,7 @@ from scipy.spatial import cKDTree
 
 from nispcodec.core.arrays import Float64Array, Int32Array, Int64Array
 from nispcodec.core.asset import TexturedMesh
+from nispcodec.core.cores import cores
 from nispcodec.core.document import ChartTable
 from nispcodec.core.sample_set import SampleSet
 from nispcodec.core.texture import base_colors
@@ -53,7 +54,7 @@ def _at_borders(samples: SampleSet, count: int) -> tuple[Int64Array, Int32Array]
     rows, nearest = [], []
     for start in range(0, len(points), BLOCK):
         block = slice(start, start + BLOCK)
-        near = tree.query(points[block], list(range(1, count + 1)), workers=-1)[1]
+        near = tree.query(points[block], list(range(1, count + 1)), workers=cores())[1]
         mixed = np.flatnonzero((charts[near] != charts[block, None]).any(axis=1))
         rows.append(order[start + mixed])
         nearest.append(order[near[mixed]].astype(np.int32))

@@ -129,7 +129,8 @@ def test_no_process_is_left_of_an_unwrapping_that_is_ended(
 ) -> None:
     program, out = tmp_path / "program.py", tmp_path / "out.nisp"
     program.write_text(UNWRAPPING)
-    command = [sys.executable, program, str(int(number)), ball, "-o", out, "--unwrap"]
+    command: list[str | Path] = [sys.executable, program, str(int(number)), ball]
+    command += ["-o", out, "--unwrap"]
     with subprocess.Popen(
         command, stderr=subprocess.PIPE, text=True, start_new_session=True
     ) as run:
