@@ -14,6 +14,8 @@ from nispcodec.infer.evaluate import classify, evaluate, gradient
 FRAMES = ("world", "normalized")
 PROJECTION_STEPS = 8
 FAR = 1e6
+# Points that are prepared, or looked up, at a time: both take many times the memory of the answer.
+PART = 1 << 18
 
 
 class NispModel:
@@ -79,8 +81,11 @@ class NispModel:
         # A face without UV looks nothing up: its material shows its factor, key -1 - material.
         keys = np.where(table.has_uv, table.materials, -1 - table.materials)[charts]
         colors = np.empty((len(normalized), 4), np.float32)
-        for key in np.unique(keys).tolist():
-            colors[keys == key] = self._base_color(key, uvs[keys == key])
+        for start in range(0, len(keys), PART):
+            part = slice(start, start + PART)
+            for key in np.unique(keys[part]).tolist():
+                shown = keys[part] == key
+                colors[part][shown] = self._base_color(key, uvs[part][shown])
         return colors
 
     def project(self, points: ArrayLike, frame: str = "world") -> Float64Array:
@@ -152,12 +157,16 @@ class NispModel:
             raise QueryError(
                 f"points: expected numbers of shape (n, 3), found {array.dtype} of {array.shape}"
             )
-        normalized = self.document.frame.to_normalized(array) if frame == "world" else array
-        near = (np.abs(normalized) < FAR).all(axis=1)
-        if not near.all():
-            row = int(np.argmin(near))
-            raise QueryError(
-                f"points: expected finite numbers within {FAR:g} radii of the asset, "
-                f"found {array[row].tolist()} in row {row}"
-            )
-        return normalized.astype(np.float32)
+        normalized = np.empty(array.shape, np.float32)
+        for start in range(0, len(array), PART):
+            part = array[start : start + PART]
+            moved = self.document.frame.to_normalized(part) if frame == "world" else part
+            near = (np.abs(moved) < FAR).all(axis=1)
+            if not near.all():
+                row = int(np.argmin(near))
+                raise QueryError(
+                    f"points: expected finite numbers within {FAR:g} radii of the asset, "
+                    f"found {part[row].tolist()} in row {start + row}"
+                )
+            normalized[start : start + PART] = moved
+        return normalized
