@@ -79,7 +79,12 @@ LARGEST_NETWORKS = 1_000_000
     is_flag=True,
     help="Fill what no face uses with the colors beside it: no specks at seams.",
 )
-@click.option("--texture-format", type=LibraryChoice(texture_formats), help="Re-encode the images.")
+@click.option(
+    "--texture-format",
+    type=LibraryChoice(texture_formats),
+    help="Re-encode the images. Normal maps and other data keep all channels as sharp: webp is "
+    "lossless for them.",
+)
 @click.option("--texture-quality", type=Whole(1, 100), default=90, show_default=True)
 @pruning_options
 @click.option("--no-textures", is_flag=True, help="Leave the images out.")

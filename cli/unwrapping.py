@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import multiprocessing
+import signal
 from collections.abc import Callable
-from concurrent.futures import ProcessPoolExecutor
-from concurrent.futures.process import BrokenProcessPool
 from dataclasses import replace
+from multiprocessing.connection import Connection
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
@@ -33,14 +33,34 @@ def apart(make: Callable[[TexturedMesh], TexturedMesh], mesh: TexturedMesh) -> T
     from nispcodec.core.errors import NispError
 
     context = multiprocessing.get_context("spawn")
+    answer, told = context.Pipe(duplex=False)
+    child = context.Process(target=_tell, args=(told, make, mesh), daemon=True)
+    child.start()
+    told.close()  # so that the end of the process is the end of what it tells
     try:
-        with ProcessPoolExecutor(1, context) as pool:
-            return pool.submit(make, mesh).result()
-    except BrokenProcessPool as why:
+        found = answer.recv()
+    except EOFError as why:
         raise NispError(
             f"{mesh.name}: expected an atlas, found a crash while unwrapping {len(mesh.faces):,} "
             f"faces: simplify or mend the mesh, or unwrap it in a modeling tool"
         ) from why
+    finally:
+        child.kill()  # Ctrl-C does not wait for it
+        child.join()
+    if isinstance(found, BaseException):
+        raise found
+    return found
+
+
+def _tell(
+    told: Connection, make: Callable[[TexturedMesh], TexturedMesh], mesh: TexturedMesh
+) -> None:
+    """The work of the process. Ctrl-C reaches it too, and is answered by the one that asked."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    try:
+        told.send(make(mesh))
+    except Exception as error:
+        told.send(error)
 
 
 def with_collapsed_named(mesh: TexturedMesh) -> TexturedMesh:

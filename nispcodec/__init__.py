@@ -20,9 +20,16 @@ from typing import TYPE_CHECKING
 # put the module in the function's place.
 import nispcodec.render  # noqa: F401
 from nispcodec.core.asset import Material, Texture, TexturedMesh, TextureMap
-from nispcodec.core.errors import FitError, FormatError, MeshError, NispError, QueryError
+from nispcodec.core.errors import (
+    FitError,
+    FormatError,
+    MeshError,
+    NispError,
+    NispWarning,
+    QueryError,
+)
 from nispcodec.core.extras import require
-from nispcodec.core.progress import Listener, Progress, silent
+from nispcodec.core.progress import Listener, Progress, warn, warning_listener
 from nispcodec.encode.config import EncodeConfig
 
 if TYPE_CHECKING:
@@ -39,6 +46,7 @@ __all__ = [
     "MeshError",
     "NispError",
     "NispModel",
+    "NispWarning",
     "Progress",
     "QueryError",
     "Texture",
@@ -83,7 +91,7 @@ def write_mesh(mesh: TexturedMesh, path: str | Path) -> list[Path]:
 def encode(
     mesh: TexturedMesh | str | Path,
     config: EncodeConfig | None = None,
-    progress: Listener = silent,
+    progress: Listener | None = None,
     tuning: Tuning | None = None,
 ) -> NispModel:
     """Fit networks to a mesh, or to the mesh in a file. Needs `pip install 'nispcodec[encode]'`.
@@ -91,6 +99,9 @@ def encode(
     `config` holds what a user chooses, by default `EncodeConfig()`. `progress` is called with each
     `Progress`. `tuning` holds numbers that are not meant to be chosen by users
     (`nispcodec.encode.config`).
+
+    What was left out of a file is warned of by Python's `warnings`, as `NispWarning`; so is what
+    was done about a mesh and its fit, unless a `progress` hears it as `Progress.warning`.
 
     Ctrl-C and errors leave nothing behind. Raises TypeError for what is neither mesh nor path,
     MeshError for a file that cannot be read and when nothing of the mesh can be held by a signed
@@ -100,7 +111,10 @@ def encode(
     require("scipy", "igl", extra="encode", what_for="encoding")
     from nispcodec.encode import recipe
 
-    return recipe.encode(_mesh(mesh), config, progress, tuning)
+    asset = _mesh(mesh)
+    if asset is not mesh:
+        warn(asset.warnings)
+    return recipe.encode(asset, config, progress or warning_listener, tuning)
 
 
 def load(path: str | Path) -> NispModel:
@@ -160,7 +174,8 @@ def retexture(
 
     `slot` is "base_color", "normal", "metallic_roughness", "occlusion" or "emissive". `material` is
     a name; without it the image goes to the materials that have a texture there, which must share
-    it. Raises NispError for a slot or material that is not there, and for an unreadable image.
+    it. What is done about the image is warned of. Raises NispError for a slot or material that is
+    not there, and for an unreadable image.
     """
     from nispcodec.edit.retexture import retextured
     from nispcodec.model import NispModel
@@ -170,7 +185,9 @@ def retexture(
         data = path.read_bytes()
     except OSError as why:
         raise NispError(f"{path}: cannot be read: {why.strerror}") from why
-    return NispModel(retextured(model.document, slot, data, path.name, material)[0])
+    document, said = retextured(model.document, slot, data, path.name, material)
+    warn(said)
+    return NispModel(document)
 
 
 def _mesh(given: object) -> TexturedMesh:

@@ -123,13 +123,15 @@ def test_an_extra_that_is_asked_for_has_what_is_needed() -> None:
     calls = list(calls_of_require())
     assert calls
     for call in calls:
-        named = {each.arg: ast.literal_eval(each.value) for each in call.keywords}
+        (extra,) = (each.value for each in call.keywords if each.arg == "extra")
         wanted = {ast.literal_eval(each) for each in call.args}
-        assert {DISTRIBUTIONS.get(each, each) for each in wanted} <= requirements(named["extra"])
+        assert {DISTRIBUTIONS.get(each, each) for each in wanted} <= requirements(
+            ast.literal_eval(extra)
+        )
 
 
 def test_all_is_every_extra_of_the_library() -> None:
-    assert EXTRAS["all"] == ["nispcodec[encode,torch,render,unwrap]"]
+    assert EXTRAS["all"] == ["nispcodec[encode,torch,render,unwrap,gltf]"]
 
 
 def test_what_is_there_is_not_complained_about() -> None:

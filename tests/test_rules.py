@@ -16,7 +16,7 @@ ROOT = Path(__file__).parent.parent
 RULES: dict[str, tuple[set[str], set[str]]] = {
     # A mesh knows how to save itself.
     "core": ({"numpy", "scipy", "PIL"}, {"io"}),
-    "io": ({"numpy", "PIL"}, {"core"}),
+    "io": ({"numpy", "PIL", "DracoPy", "meshoptimizer", "opengl_basisu"}, {"core"}),
     "geometry": ({"numpy", "scipy", "igl"}, {"core"}),
     "dataset": ({"numpy", "scipy"}, {"core", "geometry"}),
     "simplify": (

@@ -7,6 +7,7 @@ from scipy.spatial import cKDTree
 
 from nispcodec.core.arrays import Float64Array, Int32Array, Int64Array
 from nispcodec.core.asset import TexturedMesh
+from nispcodec.core.cores import cores
 from nispcodec.core.document import ChartTable
 from nispcodec.core.sample_set import SampleSet
 from nispcodec.core.texture import base_colors
@@ -64,7 +65,7 @@ def _at_borders(samples: SampleSet, count: int, looks: int) -> tuple[Int64Array,
     rows, nearest = [], []
     for start in range(0, len(asked), BLOCK):
         block = asked[start : start + BLOCK]
-        near = tree.query(points[block], ranks, workers=-1)[1].reshape(len(block), count)
+        near = tree.query(points[block], ranks, workers=cores())[1].reshape(len(block), count)
         mixed = np.flatnonzero((charts[near] != charts[block, None]).any(axis=1))
         rows.append(order[block[mixed]])
         nearest.append(order[near[mixed]].astype(np.int32))

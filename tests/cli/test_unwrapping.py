@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+import multiprocessing.synchronize
 import os
 import signal
 from dataclasses import replace
@@ -36,6 +37,14 @@ def test_results_and_errors_come_back() -> None:
     assert apart(renamed, MESH).name == "other"
     with pytest.raises(MeshError, match="m: refused"):
         apart(refuse, MESH)
+
+
+def test_no_shared_memory_is_needed(monkeypatch: pytest.MonkeyPatch) -> None:
+    def full(*_: object, **__: object) -> None:
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(multiprocessing.synchronize.SemLock, "__init__", full)
+    assert apart(renamed, MESH).name == "other"
 
 
 def test_faces_without_an_area_in_the_atlas_are_counted() -> None:
