@@ -129,7 +129,7 @@ def test_an_extra_that_is_asked_for_has_what_is_needed() -> None:
 
 
 def test_all_is_every_extra_of_the_library() -> None:
-    assert EXTRAS["all"] == ["nispcodec[encode,torch,render,unwrap]"]
+    assert EXTRAS["all"] == ["nispcodec[encode,torch,render,unwrap,remote]"]
 
 
 def test_what_is_there_is_not_complained_about() -> None:

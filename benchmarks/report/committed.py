@@ -24,7 +24,7 @@ RIVALS = (
     SIMPLIFY, CORNERS,
 )  # fmt: skip
 
-UNMEASURED = ("nispcodec/bake", "nispcodec/edit", "nispcodec/procedural")
+UNMEASURED = ("nispcodec/bake", "nispcodec/catalogue", "nispcodec/edit", "nispcodec/procedural")
 """What no committed number follows."""
 
 

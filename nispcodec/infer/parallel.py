@@ -15,6 +15,7 @@ Part = TypeVar("Part")
 
 _ALONE = Lock()
 _mine = local()
+_most: list[int] = []
 
 
 def parallel_for(run: Callable[[Part], object], parts: Sequence[Part]) -> None:
@@ -42,8 +43,17 @@ def parallel_for(run: Callable[[Part], object], parts: Sequence[Part]) -> None:
             done.result()
 
 
+def use_cores(count: int) -> None:
+    """From now on this process works on at most so many cores, as others have work beside it."""
+    _most[:] = [count]
+
+
 def cores() -> int:
     """How many cores this process may use."""
+    return min([_allowed(), *_most])
+
+
+def _allowed() -> int:
     if hasattr(os, "sched_getaffinity"):
         return len(os.sched_getaffinity(0))
     return os.cpu_count() or 1

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from nispcodec_cli.unwrapping import apart, with_collapsed_named
+from nispcodec_cli.unwrapping import apart
 
 from nispcodec.core.asset import TexturedMesh
 from nispcodec.core.errors import MeshError, NispError
@@ -36,12 +36,3 @@ def test_results_and_errors_come_back() -> None:
     assert apart(renamed, MESH).name == "other"
     with pytest.raises(MeshError, match="m: refused"):
         apart(refuse, MESH)
-
-
-def test_faces_without_an_area_in_the_atlas_are_counted() -> None:
-    (warning,) = with_collapsed_named(MESH).warnings
-    assert warning.startswith("unwrapping: 1 of 1 faces got no area in the atlas")
-    laid = replace(MESH, uvs=np.eye(3)[:, :2].copy(), uv_faces=MESH.faces)
-    assert with_collapsed_named(laid).warnings == ()
-    line = replace(MESH, positions=np.array([[0.0, 0, 0], [1, 0, 0], [2, 0, 0]]))
-    assert with_collapsed_named(line).warnings == ()
