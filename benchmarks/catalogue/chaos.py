@@ -20,8 +20,9 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from functools import partial
 from pathlib import Path
 
 import click
@@ -43,6 +44,8 @@ RESULTS = Path("benchmarks/results/batch_chaos.json")
 TRIANGLES = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n"
 CRAMPED, ROOMY = "400k", "500m"
 """Of the file system: first too small for all outputs, then not."""
+Begin = Callable[[Path], subprocess.Popen[bytes]]
+"""Begins a driver in a process of its own, on an output."""
 TARGETS = (
     Target("good assets that are missing", ("missing",), 0),
     Target("... that differ", ("different",), 0),
@@ -67,19 +70,17 @@ def drive(source: str, output: str, timeout: float) -> int:
     return 4 if batch.driver is not None and batch.driver.stopped else 0
 
 
-def begin(source: Path, output: Path, timeout: float) -> subprocess.Popen[bytes]:
+def begin(source: Path, timeout: float, output: Path) -> subprocess.Popen[bytes]:
     """A driver in a process of its own."""
     code = "import sys; from benchmarks.catalogue.chaos import drive; "
     code += f"sys.exit(drive({str(source)!r}, {str(output)!r}, {timeout}))"
     return subprocess.Popen([sys.executable, "-c", code], start_new_session=True)
 
 
-def chaos(
-    source: Path, output: Path, kills: int, seed: int, timeout: float, grow: Path | None
-) -> Record:
+def chaos(begun: Begin, output: Path, kills: int, seed: int, grow: Path | None) -> Record:
     """Runs until there were so many kills, and then to the end; `grow` is what to make larger."""
     dice, killed, full = random.Random(seed), {"driver": 0, "worker": 0}, 0
-    driver = begin(source, output, timeout)
+    driver = begun(output)
     while True:
         enough = sum(killed.values()) >= kills
         code = _ended(driver, None if enough else dice.uniform(0.5, 6))
@@ -97,7 +98,7 @@ def chaos(
             for path in sorted(output.rglob("*.nisp"))[::3]:
                 path.unlink()
         if driver.poll() is not None:
-            driver = begin(source, output, timeout)
+            driver = begun(output)
 
 
 def _ended(driver: subprocess.Popen[bytes], seconds: float | None) -> int | None:
@@ -178,10 +179,11 @@ def main(count: int, kills: int, seed: int, timeout: float, output: Path) -> Non
     with tempfile.TemporaryDirectory() as name, small_disk(Path(name) / "disk") as grow:
         folder, started = Path(name), time.monotonic()
         source = with_bad_ones(write_samples(folder / "in", count - 2, SMALL))
-        if begin(source, folder / "quiet", timeout).wait():
+        begun = partial(begin, source, timeout)
+        if begun(folder / "quiet").wait():
             raise click.ClickException("the undisturbed run failed")
         results["quiet_seconds"] = round(time.monotonic() - started, 1)
-        results |= chaos(source, folder / "disk", kills, seed, timeout, grow)
+        results |= chaos(begun, folder / "disk", kills, seed, grow)
         results["seconds"] = round(time.monotonic() - started, 1)
         results |= judged(folder / "quiet", folder / "disk")
     write_result(output, results)

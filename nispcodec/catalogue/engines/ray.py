@@ -9,12 +9,14 @@ path or URL, never through Ray's object store: jobs and records of a few kilobyt
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from typing import Any
 
 from nispcodec.catalogue.config import BatchConfig
 from nispcodec.catalogue.engines.child import Child, ruined
 from nispcodec.catalogue.job import Encoder, Job, Result
 from nispcodec.catalogue.record import CRASH
+from nispcodec.core.errors import NispError
 from nispcodec.core.extras import require
 
 AHEAD = 2
@@ -25,7 +27,7 @@ cluster that grows on demand sees demand."""
 class RayTasks:
     """Tasks of Ray, on the cluster at `config.address`, or on one that it begins here.
 
-    Raises NispError without the extra `ray`.
+    Raises NispError without the extra `ray`, and for more memory than any machine has.
     """
 
     def __init__(self, encode: Encoder, config: BatchConfig) -> None:
@@ -37,11 +39,16 @@ class RayTasks:
         if self._ours:
             here = {} if config.address else {"num_cpus": config.jobs_here()}
             ray.init(config.address or None, log_to_driver=False, logging_level="error", **here)
-        # Crashes are the child's, and tried again by the driver; Ray tries a lost machine again.
+        # The driver counts the tries, of crashes as of machines that are lost.
         self._task = ray.remote(max_retries=0)(run_job)
         self._encode = ray.put(encode)
         self._config = config
         self._jobs: dict[Any, Job] = {}
+        most = int(self._largest("memory"))
+        if config.memory > most:
+            self.close()
+            found = f"found one of {most:,} at most"
+            raise NispError(f"memory: expected a machine with {config.memory:,} bytes, {found}")
 
     @property
     def cores(self) -> int:
@@ -51,10 +58,11 @@ class RayTasks:
 
     def begin(self, job: Job) -> None:
         """Give the job to Ray, with as many of its cores as it takes."""
-        threads = max(1, job.threads // AHEAD)
-        config = self._config
+        # More than one machine has would be waited for forever.
+        threads = max(1, min(job.threads // AHEAD, int(self._largest("CPU"))))
+        config, own = self._config, replace(job, threads=threads)
         asked = self._task.options(num_cpus=threads, memory=config.memory or None)
-        task = asked.remote(self._encode, job, config.timeout, config.memory)
+        task = asked.remote(self._encode, own, config.timeout, config.memory)
         self._jobs[task] = job
 
     def ended(self, seconds: float) -> Iterator[tuple[Job, Result]]:
@@ -77,6 +85,11 @@ class RayTasks:
         self._jobs = {}
         if self._ours:
             self._ray.shutdown()
+
+    def _largest(self, resource: str) -> float:
+        """The most that one machine of the cluster has of a resource."""
+        alive = [each["Resources"] for each in self._ray.nodes() if each["Alive"]]
+        return max((each.get(resource, 0.0) for each in alive), default=0.0)
 
 
 _child: list[Child] = []

@@ -63,3 +63,5 @@ def test_a_cluster_does_the_same_to_the_byte_and_loses_nothing(tmp_path: Path) -
     for path in near.rglob("*.nisp"):
         assert path.read_bytes() == (far / path.relative_to(near)).read_bytes()
     assert len(list(far.rglob("*.nisp"))) == 4
+    with pytest.raises(NispError, match="expected a machine with"):
+        ran([source], batch(far, wild, replace(config, engine="ray", memory=10**18)))
