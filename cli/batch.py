@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import sys
 from collections.abc import Sequence
 from contextlib import closing
@@ -138,15 +139,17 @@ def _batch(output: str, how: dict[str, Any]) -> Batch:
     from nispcodec.catalogue.storage import is_remote
     from nispcodec.encode.config import EncodeConfig
 
-    if not is_remote(output):
-        make_folder(Path(output))
     memory = int(how.pop("memory") or 0)
     own = {each.name for each in fields(BatchConfig)} & set(how)
     config = BatchConfig(**{name: how.pop(name) for name in own}, memory=memory)
     shard, viewer, unwrap = how.pop("shard"), how.pop("viewer"), how.pop("unwrap")
     textures = not how.pop("no_textures")
     encode = EncodeConfig(engine=how.pop("backend"), textures=textures, **how)
-    return Batch(output, Settings(encode, unwrap), config, shard, viewer)
+    batch = Batch(output, Settings(encode, unwrap), config, shard, viewer)
+    batch.expect_installed()
+    if not is_remote(output):
+        make_folder(Path(output))
+    return batch
 
 
 def _found(
@@ -154,7 +157,8 @@ def _found(
 ) -> list[Asset | Problem]:
     from nispcodec.catalogue.find import Patterns, find_assets
 
-    return list(find_assets(inputs, Patterns(include, exclude), sys.stdin))
+    listed = map(os.fsdecode, sys.stdin.buffer)
+    return list(find_assets(inputs, Patterns(include, exclude), listed))
 
 
 def _merged(inputs: Sequence[str], output: str, viewer: str, reporter: Reporter) -> int:

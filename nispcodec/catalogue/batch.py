@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import os
 import re
 from collections.abc import Callable, Generator, Iterator, Sequence
 from contextlib import ExitStack
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from nispcodec.catalogue.config import BatchConfig
@@ -28,6 +29,7 @@ from nispcodec.catalogue.settings import Settings
 from nispcodec.catalogue.storage import full_disk, is_remote, joined, storage_of
 from nispcodec.catalogue.work import encoder
 from nispcodec.core.errors import NispError
+from nispcodec.core.extras import require
 
 # What writing leaves behind where its process was killed: see `write_atomic`.
 TEMPORARY = re.compile(r"\.(.+\.(nisp|webp)|catalogue.*\.(jsonl|html))\.[a-z0-9_]{8}")
@@ -67,6 +69,7 @@ class Batch:
         Whatever ends it, what is done is in the ledger, and goes on from there. Raises NispError
         where another driver is at work in the folder, or it cannot be written into.
         """
+        self.expect_installed()
         assets, problems = told_apart(list(found))
         assets = [each for each in assets if self.shard is None or self.shard.has(each.output)]
         with ExitStack() as stack:
@@ -82,6 +85,14 @@ class Batch:
                 yield each
             self.driver = Driver(jobs, self._engine(), ledger, records, self.config.retries, listen)
             yield from self.driver.results()
+
+    def expect_installed(self) -> None:
+        """Raises NispError, before the work, where packages are missing that every asset needs."""
+        require("scipy", "igl", extra="encode", what_for="encoding")
+        if self.config.thumbnail:
+            require(
+                "scipy", "igl", "embreex", "skimage", extra="render", what_for="drawing thumbnails"
+            )
 
     def _problems(self, problems: Sequence[Problem]) -> Iterator[Result]:
         """Of shards, the first tells them all."""
@@ -103,8 +114,8 @@ class Batch:
         """Raises NispError for options that exclude those of the batch."""
         joined(self.folder, asset.output)
         return Job(
-            asset,
-            self.folder,
+            replace(asset, source=_anywhere(asset.source)),
+            _anywhere(self.folder),
             self.settings.changed(asset.options),
             thumbnail=self.config.thumbnail,
             compare=self.config.compare,
@@ -154,6 +165,11 @@ class Batch:
                 raise
             if self.driver is not None:
                 self.driver.stopped = self.driver.stopped or str(why)
+
+
+def _anywhere(place: str) -> str:
+    """The place as processes elsewhere on this machine know it, too."""
+    return place if is_remote(place) else os.path.abspath(place)  # noqa: PTH100, not UTF-8
 
 
 def remove_temporaries(folder: Path) -> None:

@@ -8,7 +8,6 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from fnmatch import fnmatch
 from pathlib import Path
-from typing import TextIO
 
 from nispcodec.catalogue.manifest import SUFFIXES as MANIFESTS
 from nispcodec.catalogue.manifest import read_manifest
@@ -42,7 +41,7 @@ class Patterns:
 
 
 def find_assets(
-    inputs: Iterable[str], patterns: Patterns = Patterns(), listed: TextIO | None = None
+    inputs: Iterable[str], patterns: Patterns = Patterns(), listed: Iterable[str] = ()
 ) -> Iterator[Asset | Problem]:
     """The assets that the inputs mean, and a problem for each that means none.
 
@@ -52,7 +51,7 @@ def find_assets(
     """
     for each in inputs:
         if each == "-":
-            lines = (line.rstrip("\r\n") for line in listed or ())
+            lines = (line.rstrip("\r\n") for line in listed)
             yield from find_assets((line for line in lines if line and line != "-"), patterns)
         else:
             yield from _of_one(each, patterns)

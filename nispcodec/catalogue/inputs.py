@@ -48,8 +48,8 @@ class NotedFolder(Folder):
         return "" if way == "." else way
 
 
-def read_noted(source: str) -> tuple[TexturedMesh, Inputs]:
-    """The mesh in a file, as `load_mesh` gives it, and what it was read from.
+def read_noted(source: str) -> tuple[TexturedMesh, Inputs, int]:
+    """The mesh in a file, as `load_mesh` gives it, what it was read from, and the file's bytes.
 
     Raises MeshError for a file that cannot be read or makes no sense.
     """
@@ -61,7 +61,8 @@ def read_noted(source: str) -> tuple[TexturedMesh, Inputs]:
         raise MeshError(f"{source}: expected a file, found none") from why
     inner = storage.folder(source)
     notes: Inputs = {path.name: sha256(data)}
-    return parse_mesh(data, path, NotedFolder(inner.path, inner, inner.path, notes)), notes
+    mesh = parse_mesh(data, path, NotedFolder(inner.path, inner, inner.path, notes))
+    return mesh, notes, len(data)
 
 
 def unchanged(source: str, inputs: Mapping[str, str | None]) -> bool:

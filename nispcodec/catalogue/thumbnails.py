@@ -11,17 +11,15 @@ ORIGINAL, DECODED = "original", "decoded"
 def thumbnails(model: NispModel, mesh: TexturedMesh, size: int) -> dict[str, bytes]:
     """Pictures as WebP files, `size` pixels wide, by name; none for a size of 0.
 
-    Raises NispError without the extra `render`, MeshError as `nispcodec.render` does.
+    Raises MeshError as `nispcodec.render` does. Needs the extra `render`.
     """
     if not size:
         return {}
-    from nispcodec.core.extras import require
     from nispcodec.metrics.surface import frame_of
     from nispcodec.render.camera import view
     from nispcodec.render.images import image_bytes
     from nispcodec.render.views import render_views
 
-    require("scipy", "igl", "embreex", "skimage", extra="render", what_for="drawing thumbnails")
     frame, camera = frame_of(mesh), [view("30,20")]
     drawn = {ORIGINAL: render_views(mesh, camera, size, frame)}
     drawn[DECODED] = render_views(model, camera, size)

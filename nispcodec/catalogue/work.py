@@ -59,7 +59,7 @@ def _made(job: Job, encode: Encoder) -> Record:
     started = time.monotonic()
     place = joined(job.folder, job.asset.output)
     storage = storage_of(place)
-    mesh, inputs = read_noted(job.asset.source)
+    mesh, inputs, size = read_noted(job.asset.source)
     read = mesh
     if job.settings.unwrap:
         from nispcodec.bake.unwrap import unwrap, with_collapsed_named
@@ -88,7 +88,7 @@ def _made(job: Job, encode: Encoder) -> Record:
         settings=job.settings.digest,
         options=job.settings.options,
         sha256=sha256(data),
-        bytes={**_rate(data), **_input_bytes(job.asset.source, read)},
+        bytes={**_rate(data), **_input_bytes(job.asset.source, size, read)},
         errors=errors,
         seconds={
             "encode": round(encoded - started, 3),
@@ -125,10 +125,9 @@ def _rate(data: bytes) -> dict[str, int]:
     return {"geometry_uv": len(data) - textures, "textures": textures, "total": len(data)}
 
 
-def _input_bytes(source: str, mesh: TexturedMesh) -> dict[str, int]:
+def _input_bytes(source: str, size: int, mesh: TexturedMesh) -> dict[str, int]:
     """As `nisp encode` counts them: the images of a GLB are in its file."""
     beside = () if Path(source).suffix.lower() == ".glb" else mesh.textures
-    size = len(storage_of(source).read(source))
     return {"input_mesh": size, "input_textures": sum(len(each.data) for each in beside)}
 
 

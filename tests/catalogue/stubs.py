@@ -70,10 +70,10 @@ def once(mesh: TexturedMesh, config: EncodeConfig, listen: Listener) -> NispMode
 
 def meshes(folder: Path, *names: str) -> Path:
     """A folder with an OBJ for each name, each a little elsewhere."""
-    for number, name in enumerate(names):
+    for number, name in enumerate(names):  # a comment makes each file another
         path = folder / f"{name}.obj"
         path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_text(f"# {name}\n" + TRIANGLES.replace("v 0", f"v 0.{number % 900 + 1}"))
+        path.write_text(f"# {ascii(name)}\n" + TRIANGLES.replace("v 0", f"v 0.{number % 900 + 1}"))
     return folder
 
 

@@ -1,6 +1,5 @@
 from __future__ import annotations
 
-import io
 import os
 import sys
 from pathlib import Path
@@ -52,7 +51,7 @@ def test_a_glob_keeps_what_follows_its_fixed_part(tmp_path: Path) -> None:
 
 def test_a_list_has_a_path_a_line(tmp_path: Path) -> None:
     meshes(tmp_path, "a", "b")
-    listed = io.StringIO(f"{tmp_path}/b.obj\r\n\n{tmp_path}/a.obj\n-\n")
+    listed = [f"{tmp_path}/b.obj\r\n", "\n", f"{tmp_path}/a.obj\n", "-\n"]
     assert [each.source for each in find_assets(["-"], listed=listed)] == [
         f"{tmp_path}/b.obj",
         f"{tmp_path}/a.obj",

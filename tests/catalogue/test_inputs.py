@@ -19,7 +19,7 @@ def mug(tmp_path: Path) -> Path:
 
 
 def test_everything_that_an_asset_is_read_from_is_noted(mug: Path) -> None:
-    mesh, inputs = read_noted(str(mug))
+    mesh, inputs, _ = read_noted(str(mug))
     assert set(inputs) == {each.name for each in mug.parent.iterdir()}
     assert mesh.warnings == load_mesh(mug).warnings
     assert mesh.name == "mug"
@@ -28,7 +28,7 @@ def test_everything_that_an_asset_is_read_from_is_noted(mug: Path) -> None:
 
 @pytest.mark.parametrize("name", ["mug.obj", "mug.mtl", "mug_mug_color.png"])
 def test_a_change_anywhere_is_seen(mug: Path, name: str) -> None:
-    _, inputs = read_noted(str(mug))
+    _, inputs, _ = read_noted(str(mug))
     path = mug.with_name(name)
     path.write_bytes(path.read_bytes() + b"\n")
     assert not unchanged(str(mug), inputs)
@@ -40,7 +40,7 @@ def test_an_image_that_comes_later_is_a_change(mug: Path) -> None:
     image = mug.with_name("mug_mug_color.png")
     data = image.read_bytes()
     image.unlink()
-    mesh, inputs = read_noted(str(mug))
+    mesh, inputs, _ = read_noted(str(mug))
     assert inputs["mug_mug_color.png"] is None
     assert mesh.warnings
     assert unchanged(str(mug), inputs)

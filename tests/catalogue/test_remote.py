@@ -34,8 +34,8 @@ def textured(folder: Path) -> Path:
 
 def test_an_asset_is_read_with_all_that_it_names(tmp_path: Path) -> None:
     path = textured(tmp_path)
-    near, near_inputs = read_noted(str(path))
-    far, far_inputs = read_noted(path.as_uri())
+    near, near_inputs, _ = read_noted(str(path))
+    far, far_inputs, _ = read_noted(path.as_uri())
     assert len(near.textures) == len(far.textures) == 1
     assert far.textures == near.textures
     assert far_inputs == near_inputs
@@ -48,7 +48,7 @@ def test_an_asset_is_read_with_all_that_it_names(tmp_path: Path) -> None:
 def test_what_is_missing_is_missing(tmp_path: Path) -> None:
     path = textured(tmp_path)
     (tmp_path / "m" / "wood.png").unlink()
-    _, inputs = read_noted(path.as_uri())
+    _, inputs, _ = read_noted(path.as_uri())
     assert None in inputs.values()
     with pytest.raises(MeshError, match="expected a file, found none"):
         read_noted((tmp_path / "gone.obj").as_uri())

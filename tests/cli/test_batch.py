@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 from pathlib import Path
 
 import click
@@ -72,8 +73,8 @@ def test_json_is_a_line_for_each_asset_and_the_end(tmp_path: Path) -> None:
 
 
 def test_paths_come_on_standard_input(tmp_path: Path) -> None:
-    source = meshes(tmp_path / "in", "a", "b")
-    listed = f"{source}/b.obj\n".encode()
+    source = meshes(tmp_path / "in", "a", os.fsdecode(b"caf\xe9"))
+    listed = f"{source}/".encode() + b"caf\xe9.obj\n"
     result = done("batch", "-", "-o", tmp_path / "out", *FAST, given=listed)
     assert "1 done" in result.stdout
 
