@@ -151,20 +151,21 @@ def _of_glob(pattern: str, patterns: Patterns) -> Iterator[Asset | Problem]:
 def _of_url(place: str, patterns: Patterns) -> Iterator[Asset | Problem]:
     from nispcodec.catalogue.remote import Remote
 
-    fixed = (
-        place[: min(place.find(each) for each in MAGIC if each in place)]
-        if _is_glob(place)
-        else place
-    )
-    top = fixed if Path(fixed).suffix.lower() not in READERS else fixed.rpartition("/")[0]
-    top = top if not _is_glob(place) else fixed.rpartition("/")[0]
+    top = _top(place).partition("://")[2].strip("/") + "/"
     try:
         for url, size in Remote(place).found(place):
-            way = url.partition(f"{top.partition('://')[2].strip('/')}/")[2]
+            way = url.partition(top)[2]
             if Path(url).suffix.lower() in READERS and patterns.wanted(way):
                 yield Asset(url, output_of(way), size)
     except (OSError, NispError) as why:
         yield Problem(place, str(why))
+
+
+def _top(url: str) -> str:
+    """The folder that outputs keep their paths from."""
+    if _is_glob(url):
+        return url[: min(url.find(each) for each in MAGIC if each in url)].rpartition("/")[0]
+    return url.rpartition("/")[0] if Path(url).suffix.lower() in READERS else url
 
 
 def _of_manifest(place: str) -> Iterator[Asset | Problem]:

@@ -56,32 +56,21 @@ def _still_done(job: Job, earlier: Record) -> bool:
 
 def _made(job: Job, encode: Encoder) -> Record:
     """Raises NispError, OSError, MemoryError and whatever a bug raises."""
-    started = time.monotonic()
-    place = joined(job.folder, job.asset.output)
+    started, output = time.monotonic(), job.asset.output
+    place = joined(job.folder, output)
     storage = storage_of(place)
-    mesh, inputs, size = read_noted(job.asset.source)
-    read = mesh
-    if job.settings.unwrap:
-        from nispcodec.bake.unwrap import unwrap, with_collapsed_named
-
-        mesh = with_collapsed_named(unwrap(mesh))
-    warnings = list(mesh.warnings)
-
-    def heard(update: Progress) -> None:
-        if update.warning:
-            warnings.append(update.warning)
-
-    config = replace(job.settings.encode, threads=job.threads)
-    model = encode(mesh, config, heard)
+    read, inputs, size = read_noted(job.asset.source)
+    mesh = _unwrapped(read) if job.settings.unwrap else read
+    model, warnings = _encoded(job, mesh, encode)
     data = _verified(model)
     storage.write(place, data)
-    encoded = time.monotonic()
+    encoded = time.monotonic() - started
     errors = _errors(model, mesh, job.compare)
     for name, picture in thumbnails(model, mesh, job.thumbnail).items():
-        storage.write(joined(job.folder, thumbnail_of(job.asset.output, name)), picture)
+        storage.write(joined(job.folder, thumbnail_of(output, name)), picture)
     return Record(
         source=job.asset.source,
-        output=job.asset.output,
+        output=output,
         status=DONE,
         content=content(inputs),
         inputs=inputs,
@@ -90,14 +79,30 @@ def _made(job: Job, encode: Encoder) -> Record:
         sha256=sha256(data),
         bytes={**_rate(data), **_input_bytes(job.asset.source, size, read)},
         errors=errors,
-        seconds={
-            "encode": round(encoded - started, 3),
-            "all": round(time.monotonic() - started, 3),
-        },
-        warnings=tuple(warnings),
+        seconds={"encode": round(encoded, 3), "all": round(time.monotonic() - started, 3)},
+        warnings=warnings,
         tries=job.tries,
         nispcodec=__version__,
     )
+
+
+def _unwrapped(mesh: TexturedMesh) -> TexturedMesh:
+    """With an atlas of its own. A crash of the native library ends the worker, and this job."""
+    from nispcodec.bake.unwrap import unwrap, with_collapsed_named
+
+    return with_collapsed_named(unwrap(mesh))
+
+
+def _encoded(job: Job, mesh: TexturedMesh, encode: Encoder) -> tuple[NispModel, tuple[str, ...]]:
+    """The model, and all that reader and encoder warn of."""
+    warnings = list(mesh.warnings)
+
+    def heard(update: Progress) -> None:
+        if update.warning:
+            warnings.append(update.warning)
+
+    config = replace(job.settings.encode, threads=job.threads)
+    return encode(mesh, config, heard), tuple(warnings)
 
 
 def thumbnail_of(output: str, name: str) -> str:

@@ -73,7 +73,7 @@ def meshes(folder: Path, *names: str) -> Path:
     for number, name in enumerate(names):  # a comment makes each file another
         path = folder / f"{name}.obj"
         path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_text(f"# {ascii(name)}\n" + TRIANGLES.replace("v 0", f"v 0.{number % 900 + 1}"))
+        path.write_text(f"# {name!a}\n" + TRIANGLES.replace("v 0", f"v 0.{number % 900 + 1}"))
     return folder
 
 
