@@ -36,6 +36,7 @@ if TYPE_CHECKING:
     from nispcodec.model import NispModel
 
 __all__ = [
+    "BatchConfig",
     "EncodeConfig",
     "FitError",
     "FormatError",
@@ -120,8 +121,7 @@ def encode_many(
     folder, which gets `catalogue.jsonl` and `catalogue.html` too. Both may be URLs, with `pip
     install 'nispcodec[remote]'`. What an earlier call has done is kept, and told (`Result.kept`);
     an asset that fails is a result like others (`Result.record`). Closing the iterator stops the
-    work, and a later call goes on. `batch` holds how many at a time, timeouts, memory and engine
-    (`nispcodec.catalogue.config`).
+    work, and a later call goes on. `batch` holds how many at a time, timeouts, memory and engine.
 
     Raises NispError where another process works in the folder, and for a package that is missing.
     """
@@ -214,4 +214,8 @@ def __getattr__(name: str) -> object:
         from nispcodec.model import NispModel
 
         return NispModel
+    if name == "BatchConfig":
+        from nispcodec.catalogue.config import BatchConfig
+
+        return BatchConfig
     raise AttributeError(f"module 'nispcodec' has no attribute {name!r}")
