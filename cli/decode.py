@@ -181,9 +181,9 @@ def free_memory() -> int | None:
 def baked(model: NispModel, mesh: TexturedMesh, size: int) -> TexturedMesh:
     """The mesh with an atlas and textures of its own."""
     from nispcodec.bake.rebake import rebaked
-    from nispcodec.bake.unwrap import unwrap
+    from nispcodec.bake.unwrap import unwrap, with_collapsed_named
 
-    from .unwrapping import apart, with_collapsed_named
+    from .unwrapping import apart
 
     # The warning of textures that no longer fit is none here: new ones are made.
     atlas = with_collapsed_named(replace(apart(unwrap, mesh), warnings=mesh.warnings))

@@ -5,8 +5,13 @@ from __future__ import annotations
 import multiprocessing
 import signal
 from collections.abc import Callable
+<<<<<<< HEAD
 from dataclasses import replace
 from multiprocessing.connection import Connection
+=======
+from concurrent.futures import ProcessPoolExecutor
+from concurrent.futures.process import BrokenProcessPool
+>>>>>>> batch
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
@@ -18,7 +23,7 @@ def unwrapped(mesh: TexturedMesh) -> TexturedMesh:
 
     Raises NispError without the extra `unwrap`, and where unwrapping crashes.
     """
-    from nispcodec.bake.unwrap import unwrap
+    from nispcodec.bake.unwrap import unwrap, with_collapsed_named
     from nispcodec.core.extras import require
 
     require("xatlas", extra="unwrap", what_for="unwrapping")
@@ -44,6 +49,7 @@ def apart(make: Callable[[TexturedMesh], TexturedMesh], mesh: TexturedMesh) -> T
             f"{mesh.name}: expected an atlas, found a crash while unwrapping {len(mesh.faces):,} "
             f"faces: simplify or mend the mesh, or unwrap it in a modeling tool"
         ) from why
+<<<<<<< HEAD
     finally:
         child.kill()  # Ctrl-C does not wait for it
         child.join()
@@ -78,3 +84,5 @@ def with_collapsed_named(mesh: TexturedMesh) -> TexturedMesh:
         f"small for it: scale small parts up, or encode them as an asset of their own"
     )
     return replace(mesh, warnings=(*mesh.warnings, warning))
+=======
+>>>>>>> batch

@@ -33,12 +33,17 @@ from nispcodec.core.progress import Listener, Progress, warn, warning_listener
 from nispcodec.encode.config import EncodeConfig
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator
+
+    from nispcodec.catalogue.config import BatchConfig
+    from nispcodec.catalogue.job import Result
     from nispcodec.core.arrays import Float32Array
     from nispcodec.encode.config import Tuning
     from nispcodec.metrics.compare import Report
     from nispcodec.model import NispModel
 
 __all__ = [
+    "BatchConfig",
     "EncodeConfig",
     "FitError",
     "FormatError",
@@ -54,6 +59,7 @@ __all__ = [
     "TexturedMesh",
     "compare",
     "encode",
+    "encode_many",
     "load",
     "load_mesh",
     "render",
@@ -115,6 +121,27 @@ def encode(
     if asset is not mesh:
         warn(asset.warnings)
     return recipe.encode(asset, config, progress or warning_listener, tuning)
+
+
+def encode_many(
+    inputs: str | Path | Iterable[str | Path],
+    output: str | Path,
+    config: EncodeConfig | None = None,
+    batch: BatchConfig | None = None,
+) -> Iterator[Result]:
+    """Encode mesh files into a folder, side by side, and yield each asset's result as it comes.
+
+    `inputs` are mesh files, folders, globs and manifests, as `nisp batch` takes them; `output` is a
+    folder, which gets `catalogue.jsonl` and `catalogue.html` too. Both may be URLs, with `pip
+    install 'nispcodec[remote]'`. What an earlier call has done is kept, and told (`Result.kept`);
+    an asset that fails is a result like others (`Result.record`). Closing the iterator stops the
+    work, and a later call goes on. `batch` holds how many at a time, timeouts, memory and engine.
+
+    Raises NispError where another process works in the folder, and for a package that is missing.
+    """
+    from nispcodec.catalogue.many import encode_many as run
+
+    return run(inputs, output, config, batch)
 
 
 def load(path: str | Path) -> NispModel:
@@ -204,4 +231,8 @@ def __getattr__(name: str) -> object:
         from nispcodec.model import NispModel
 
         return NispModel
+    if name == "BatchConfig":
+        from nispcodec.catalogue.config import BatchConfig
+
+        return BatchConfig
     raise AttributeError(f"module 'nispcodec' has no attribute {name!r}")

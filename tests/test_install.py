@@ -75,6 +75,7 @@ def test_a_plain_install_decodes_queries_verifies_and_converts(model: Path, tmp_
 # The command, the extra that it needs: {0} is a model, {1} a mesh, {2} what to write.
 LACKING = [
     ("encode {1} -o {2}.nisp", "encode"),
+    ("batch {1} -o {2}", "encode"),
     ("encode {1} --unwrap -o {2}.nisp", "unwrap"),
     ("decode {0} --rebake 16 --resolution 16 --faces 100 -o {2}.glb", "unwrap"),
     ("render {0} --size 16 -o {2}.png", "render"),
@@ -131,7 +132,11 @@ def test_an_extra_that_is_asked_for_has_what_is_needed() -> None:
 
 
 def test_all_is_every_extra_of_the_library() -> None:
+<<<<<<< HEAD
     assert EXTRAS["all"] == ["nispcodec[encode,torch,render,unwrap,gltf]"]
+=======
+    assert EXTRAS["all"] == ["nispcodec[encode,torch,render,unwrap,remote]"]
+>>>>>>> batch
 
 
 def test_what_is_there_is_not_complained_about() -> None:

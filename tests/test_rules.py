@@ -40,6 +40,23 @@ RULES: dict[str, tuple[set[str], set[str]]] = {
         {"numpy"},
         {"core", "geometry", "dataset", "train", "format", "infer", "model", "edit"},
     ),
+    # A driver of everything else, by what is public of it.
+    "catalogue": (
+        {"fsspec", "ray", "threadpoolctl"},
+        {
+            "core",
+            "io",
+            "encode",
+            "format",
+            "infer",
+            "metrics",
+            "model",
+            "bake",
+            "render",
+            "compare",
+            "__version__",
+        },
+    ),
 }
 
 

@@ -15,6 +15,7 @@ CORE = ("nispcodec/core", ":(glob)nispcodec/*.py")
 FORMAT = ("nispcodec/format",)
 TRAIN = ("nispcodec/geometry", "nispcodec/dataset", "nispcodec/train", MESH, FIT)
 ENCODE = (*CORE, *FORMAT, *TRAIN, "nispcodec/encode", "nispcodec/io")
+CATALOGUE = ("nispcodec/catalogue",)
 INFER = ("nispcodec/infer", DECODED)
 DECODE = (*INFER, "nispcodec/extract")
 METRICS = ("nispcodec/metrics",)
@@ -76,6 +77,11 @@ RESULTS = (
         beside=("paper.md",),
         asks="benchmarks.paper.command",
     ),
+    CommittedResult("batch.json", "benchmarks.catalogue.speed", (*ENCODE, *CATALOGUE)),
+    CommittedResult(
+        "batch_bookkeeping.json", "benchmarks.catalogue.bookkeeping", (*CORE, *CATALOGUE)
+    ),
+    CommittedResult("batch_chaos.json", "benchmarks.catalogue.chaos", (*CORE, *CATALOGUE)),
     CommittedResult("paper_preset.json", "benchmarks.paper.preset", ENCODE),
     CommittedResult("paper_pictures.json", "benchmarks.paper.pictures", (*ROUND_TRIP, *RENDER)),
     CommittedResult("pruning.json", "benchmarks.paper.pruning", (*TRAIN, *FORMAT)),

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from nispcodec_cli.unwrapping import apart, with_collapsed_named
+from nispcodec_cli.unwrapping import apart
 
 from nispcodec.core.asset import TexturedMesh
 from nispcodec.core.errors import MeshError, NispError
@@ -37,6 +37,7 @@ def test_results_and_errors_come_back() -> None:
     assert apart(renamed, MESH).name == "other"
     with pytest.raises(MeshError, match="m: refused"):
         apart(refuse, MESH)
+<<<<<<< HEAD
 
 
 def test_no_shared_memory_is_needed(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -54,3 +55,5 @@ def test_faces_without_an_area_in_the_atlas_are_counted() -> None:
     assert with_collapsed_named(laid).warnings == ()
     line = replace(MESH, positions=np.array([[0.0, 0, 0], [1, 0, 0], [2, 0, 0]]))
     assert with_collapsed_named(line).warnings == ()
+=======
+>>>>>>> batch
