@@ -100,13 +100,8 @@ class LazyGroup(click.Group):
     "nisp",
     cls=LazyGroup,
     context_settings={"help_option_names": ["-h", "--help"]},
-<<<<<<< HEAD
-    epilog="Exit codes: 0 done, 1 `verify` found a fault, 2 an error, 130 interrupted, "
-    "143 terminated.",
-=======
-    epilog="Exit codes: 0 done, 1 `verify` found a fault, 2 an error, "
-    "3 `batch` had failures, 130 interrupted.",
->>>>>>> batch
+    epilog="Exit codes: 0 done, 1 `verify` found a fault, 2 an error, 3 `batch` had failures, "
+    "130 interrupted, 143 terminated.",
 )
 @click.version_option(package_name="nispcodec", message="%(prog)s %(version)s")
 def main() -> None:

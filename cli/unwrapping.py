@@ -5,13 +5,7 @@ from __future__ import annotations
 import multiprocessing
 import signal
 from collections.abc import Callable
-<<<<<<< HEAD
-from dataclasses import replace
 from multiprocessing.connection import Connection
-=======
-from concurrent.futures import ProcessPoolExecutor
-from concurrent.futures.process import BrokenProcessPool
->>>>>>> batch
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
@@ -49,7 +43,6 @@ def apart(make: Callable[[TexturedMesh], TexturedMesh], mesh: TexturedMesh) -> T
             f"{mesh.name}: expected an atlas, found a crash while unwrapping {len(mesh.faces):,} "
             f"faces: simplify or mend the mesh, or unwrap it in a modeling tool"
         ) from why
-<<<<<<< HEAD
     finally:
         child.kill()  # Ctrl-C does not wait for it
         child.join()
@@ -67,22 +60,3 @@ def _tell(
         told.send(make(mesh))
     except Exception as error:
         told.send(error)
-
-
-def with_collapsed_named(mesh: TexturedMesh) -> TexturedMesh:
-    """The mesh with a warning for faces that have an area, but none in their UVs."""
-    import numpy as np
-
-    (a, b, c), (p, q, r) = mesh.corner_uvs.transpose(1, 0, 2), mesh.corners.transpose(1, 0, 2)
-    u, v = b - a, c - a
-    flat = u[:, 0] * v[:, 1] == u[:, 1] * v[:, 0]
-    collapsed = int((flat & (np.cross(q - p, r - p) != 0).any(axis=1)).sum())
-    if not collapsed:
-        return mesh
-    warning = (
-        f"unwrapping: {collapsed} of {len(mesh.faces)} faces got no area in the atlas, being too "
-        f"small for it: scale small parts up, or encode them as an asset of their own"
-    )
-    return replace(mesh, warnings=(*mesh.warnings, warning))
-=======
->>>>>>> batch

@@ -132,11 +132,7 @@ def test_an_extra_that_is_asked_for_has_what_is_needed() -> None:
 
 
 def test_all_is_every_extra_of_the_library() -> None:
-<<<<<<< HEAD
-    assert EXTRAS["all"] == ["nispcodec[encode,torch,render,unwrap,gltf]"]
-=======
-    assert EXTRAS["all"] == ["nispcodec[encode,torch,render,unwrap,remote]"]
->>>>>>> batch
+    assert EXTRAS["all"] == ["nispcodec[encode,torch,render,unwrap,gltf,remote]"]
 
 
 def test_what_is_there_is_not_complained_about() -> None:

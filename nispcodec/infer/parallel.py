@@ -17,7 +17,6 @@ Part = TypeVar("Part")
 
 _ALONE = Lock()
 _mine = local()
-_most: list[int] = []
 
 
 def parallel_for(run: Callable[[Part], object], parts: Sequence[Part]) -> None:
@@ -45,29 +44,12 @@ def parallel_for(run: Callable[[Part], object], parts: Sequence[Part]) -> None:
             done.result()
 
 
-<<<<<<< HEAD
 @contextmanager
 def on_cores(count: int) -> Iterator[None]:
     """In this block what this process computes uses so many cores; 0: all of them."""
     limits = nullcontext() if count == 0 else ThreadpoolController().limit(limits=count)
     with at_most(count), limits:
         yield
-=======
-def use_cores(count: int) -> None:
-    """From now on this process works on at most so many cores, as others have work beside it."""
-    _most[:] = [count]
-
-
-def cores() -> int:
-    """How many cores this process may use."""
-    return min([_allowed(), *_most])
-
-
-def _allowed() -> int:
-    if hasattr(os, "sched_getaffinity"):
-        return len(os.sched_getaffinity(0))
-    return os.cpu_count() or 1
->>>>>>> batch
 
 
 @cache

@@ -37,7 +37,6 @@ def test_results_and_errors_come_back() -> None:
     assert apart(renamed, MESH).name == "other"
     with pytest.raises(MeshError, match="m: refused"):
         apart(refuse, MESH)
-<<<<<<< HEAD
 
 
 def test_no_shared_memory_is_needed(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -46,14 +45,3 @@ def test_no_shared_memory_is_needed(monkeypatch: pytest.MonkeyPatch) -> None:
 
     monkeypatch.setattr(multiprocessing.synchronize.SemLock, "__init__", full)
     assert apart(renamed, MESH).name == "other"
-
-
-def test_faces_without_an_area_in_the_atlas_are_counted() -> None:
-    (warning,) = with_collapsed_named(MESH).warnings
-    assert warning.startswith("unwrapping: 1 of 1 faces got no area in the atlas")
-    laid = replace(MESH, uvs=np.eye(3)[:, :2].copy(), uv_faces=MESH.faces)
-    assert with_collapsed_named(laid).warnings == ()
-    line = replace(MESH, positions=np.array([[0.0, 0, 0], [1, 0, 0], [2, 0, 0]]))
-    assert with_collapsed_named(line).warnings == ()
-=======
->>>>>>> batch

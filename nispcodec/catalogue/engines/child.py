@@ -117,13 +117,10 @@ def serve(connection: Connection) -> None:
 
 
 def _done(job: Job, encode: Encoder) -> Result:
-    from threadpoolctl import threadpool_limits
-
     from nispcodec.catalogue.work import work
-    from nispcodec.infer.parallel import use_cores
+    from nispcodec.infer.parallel import on_cores
 
-    use_cores(job.threads)
-    with threadpool_limits(job.threads):
+    with on_cores(job.threads):
         return work(job, encode)
 
 
