@@ -11,7 +11,7 @@ import numpy as np
 
 import nispcodec
 from nispcodec import EncodeConfig, NispModel, TexturedMesh
-from nispcodec.core.document import ChartTable, Document, Frame
+from nispcodec.core.document import ChartTable, Document, Field, Frame
 from nispcodec.core.network import Network, NetworkSpec
 from nispcodec.core.progress import Listener
 from nispcodec.dataset.config import SamplingConfig
@@ -36,12 +36,12 @@ def stub(mesh: TexturedMesh, config: EncodeConfig, listen: Listener) -> NispMode
     return NispModel(
         Document(
             frame=Frame((float(low[0]), float(low[1]), float(low[2])), 1.0),
-            charts=ChartTable(np.zeros(1, np.int32), np.zeros(1, np.bool_)),
             materials=mesh.materials[:1] if not mesh.textures else (nispcodec.Material(),),
             textures=(),
-            sdf=Network(NetworkSpec((6,), 1, activation="relu"), tensors),
-            chart=None,
-            uv=None,
+            field=Field(
+                ChartTable(np.zeros(1, np.int32), np.zeros(1, np.bool_)),
+                Network(NetworkSpec((6,), 1, activation="relu"), tensors),
+            ),
         )
     )
 

@@ -6,8 +6,8 @@ import os
 from dataclasses import dataclass
 from pathlib import Path
 
+from nispcodec.core.cores import cores
 from nispcodec.core.errors import NispError
-from nispcodec.infer.parallel import cores
 
 ENGINES = ("processes", "ray")
 
