@@ -21,6 +21,7 @@ METRICS = ("nispcodec/metrics",)
 RENDER = ("nispcodec/render",)
 RIVALS = (
     "benchmarks/codecs", "benchmarks/assets/simplify.py", "benchmarks/assets/corners.py",
+    "benchmarks/assets/simplify_update.py", "benchmarks/assets/simplify_update.mjs",
     SIMPLIFY, CORNERS,
 )  # fmt: skip
 
@@ -84,6 +85,11 @@ RESULTS = (
     CommittedResult("decoder.json", "benchmarks.studies.decoder", ROUND_TRIP),
     CommittedResult("format.json", "benchmarks.studies.format", (*CORE, *FORMAT)),
     CommittedResult("mesh_queries.json", "benchmarks.studies.mesh_queries", (*CORE, *INFER)),
+    CommittedResult(
+        "mesh_parts.json",
+        "benchmarks.studies.mesh_parts",
+        (*CORE, "nispcodec/simplify", *FORMAT, *METRICS, *RIVALS),
+    ),
     CommittedResult(
         "pruning_or_quantizing.json",
         "benchmarks.studies.pruning_or_quantizing",

@@ -19,7 +19,8 @@ from nispcodec.format import mesh
 from nispcodec.geometry.analysis import Analysis
 from nispcodec.geometry.shown import shown
 from nispcodec.simplify.errors import Errors
-from nispcodec.simplify.ladder import Candidate, Simplifier, best_for
+from nispcodec.simplify.ladder import Candidate, Simplifier
+from nispcodec.simplify.search import best_for
 from nispcodec.simplify.triangles import Triangles
 
 

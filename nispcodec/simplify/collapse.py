@@ -9,6 +9,7 @@ import numpy as np
 
 from nispcodec.core.arrays import Float64Array, Int64Array
 from nispcodec.core.connectivity import cell_ids
+from nispcodec.core.extras import require
 from nispcodec.simplify.config import CollapseConfig
 from nispcodec.simplify.triangles import Triangles, joined
 
@@ -23,9 +24,11 @@ def collapsed(
 
     Bodies smaller than the error are dropped, unless together they are a notable part of the area:
     then none is, those of few faces are kept as they are, and there may be more than `faces`.
+    Raises NispError without meshoptimizer.
     """
     if faces >= len(triangles):
         return triangles
+    require("meshoptimizer", extra="encode", what_for="simplifying")
     found = _simplified(triangles, faces, PRUNE, config)
     if found is not None and _lost(triangles, found) <= config.notable_area:
         return found

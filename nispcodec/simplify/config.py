@@ -60,8 +60,8 @@ class FitConfig:
     samples: float = 12.0
     fewest: int = 8000
     most: int = 60000
-    sliding: float = 0.1
-    seam_weight: float = 0.2
+    sliding: float = 0.005
+    seam_weight: float = 0.5
     seam_sliding: float = 0.02
     curve_samples: float = 6.0
     curve_fewest: int = 500
@@ -80,9 +80,6 @@ class LadderConfig:
     samples       points on each surface that errors are measured with
     fewest        faces of the first rung
     rungs         of a ladder for every factor of 256 in faces
-    trials        face counts that a search may try
-    close         a search ends within this share of the error asked for
-    helping       a bit more of UVs helps where the UV error falls below this part
     step          of the grid, for a mean distance of 1: fewer faces save as much as fewer bits
     uv_step       of the grid of UVs, for a UV error of 1
     tolerance     mean distance below which rounding need not go, normalized frame
@@ -93,9 +90,6 @@ class LadderConfig:
     samples: int = 20000
     fewest: int = 150
     rungs: float = 8.0
-    trials: int = 7
-    close: float = 0.04
-    helping: float = 0.9
     step: float = 1.8
     uv_step: float = 1.8
     tolerance: float = 5e-5
@@ -103,3 +97,31 @@ class LadderConfig:
     crease_angle: float | None = None
     collapse: CollapseConfig = CollapseConfig()
     fit: FitConfig = FitConfig()
+
+
+@dataclass(frozen=True)
+class SearchConfig:
+    """How the fewest faces within an error are found.
+
+    first       a search begins in the middle between so many faces and all
+    trials      face counts that are tried at most
+    close       the search ends where the error is within this share of the one asked for
+    slopes      of errors by faces, both as logarithms: the steepest and the flattest believed
+    uneven      how much farther from its limit the distance may be than the UVs, as a logarithm,
+                before finer positions are tried
+    fewer       the part of the faces that finer positions may save: that search begins between
+    helping     a bit more of UVs helps where the UV error falls below this part
+    uv_blur     UV error up to which UVs may be rounded at most, whatever is asked for: where the
+                mean is that of seams, what lies between them would be blurred; 1.5 pixels of 1,000
+    nearly_all  from this share of the faces on, all of them are tried too: nothing moves there
+    """
+
+    first: int = 100
+    trials: int = 7
+    close: float = 0.04
+    slopes: tuple[float, float] = (3.0, 0.4)
+    uneven: float = 0.15
+    fewer: float = 0.7
+    helping: float = 0.9
+    uv_blur: float = 1.5e-3
+    nearly_all: float = 0.6

@@ -8,6 +8,7 @@ import numpy as np
 
 from nispcodec.core.arrays import BoolArray
 from nispcodec.core.asset import Material, TexturedMesh
+from nispcodec.core.errors import MeshError
 from nispcodec.core.mesh_part import MeshPart
 from nispcodec.metrics.geometry import Matches
 from nispcodec.metrics.surface import Surface, SurfacePoints
@@ -60,10 +61,13 @@ class Original:
     def errors(self, decoded: TexturedMesh) -> Errors:
         """Errors of a mesh whose positions are in the normalized frame.
 
-        Raises MeshError where none of its faces has an area.
+        All are infinite where none of its faces has an area.
         """
         other = Surface(decoded, decoded.positions)
-        points = other.sample(len(self.points), np.random.default_rng([self.seed, 1]))
+        try:
+            points = other.sample(len(self.points), np.random.default_rng([self.seed, 1]))
+        except MeshError:
+            return Errors(np.inf, np.inf, np.inf, np.inf)
         directions = [
             Matches(self.points, other.closest(self.surface.outlook(self.points))),
             Matches(self._closest(points), points),

@@ -1,14 +1,16 @@
-"""Candidates for a part: so many faces, so many bits; and the smallest within an error."""
+"""Candidates for a part: so many faces, so many bits, with what they cost and their errors."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 
 import numpy as np
 
 from nispcodec.core.arrays import BoolArray
 from nispcodec.core.mesh_part import MAX_GRID_BITS, MeshPart
+from nispcodec.simplify.closest import Tree
 from nispcodec.simplify.collapse import collapsed
 from nispcodec.simplify.config import LadderConfig
 from nispcodec.simplify.errors import Errors, Original, mesh_of
@@ -30,7 +32,12 @@ class Candidate:
     bits: int
     uv_bits: int
     errors: Errors
-    size: int
+    coded: Coded
+
+    @cached_property
+    def size(self) -> int:
+        """Bytes, counted when they are asked for: coding takes as long as all else."""
+        return self.coded(self.part)
 
     @property
     def faces(self) -> int:
@@ -59,14 +66,16 @@ class Simplifier:
         coded: Coded,
         config: LadderConfig = LadderConfig(),
         seed: int = 0,
-        counted: BoolArray | None = None,
+        kept: BoolArray | None = None,
     ) -> Simplifier:
-        """counted: (m,) bool, the faces whose points count as the original; None: all.
+        """kept: (m,) bool, the faces that candidates hold and that are looked for; None: all.
 
+        The others, such as those hidden in bodies, may be found where they are, but are not missed.
         Raises MeshError where no face has an area.
         """
-        source = Source(triangles)
-        original = Original.of(triangles, source.tree, config.samples, seed, counted)
+        source = Source(triangles if kept is None else triangles.only(kept))
+        tree = source.tree if kept is None else Tree(triangles.corners)
+        original = Original.of(triangles, tree, config.samples, seed, kept)
         return Simplifier(source, original, coded, config, seed)
 
     def fitted(self, faces: int) -> Triangles:
@@ -90,7 +99,7 @@ class Simplifier:
             triangles = replace(triangles, uvs=uvs)
         part = quantized(triangles, bits, uv_bits, self.config.crease_angle)
         errors = self.original.errors(mesh_of(part))
-        return Candidate(part, bits, uv_bits, errors, self.coded(part))
+        return Candidate(part, bits, uv_bits, errors, self.coded)
 
     def balanced(self, faces: int) -> Candidate:
         """About so many faces, with bits whose rounding suits the error that is there before."""
@@ -119,95 +128,6 @@ def ladder(simplifier: Simplifier) -> list[Candidate]:
     count = max(2, round(config.rungs * np.log2(max(everything / config.fewest, 2)) / 8))
     wanted = np.geomspace(min(config.fewest, everything), everything, count)
     return [simplifier.balanced(round(float(faces))) for faces in wanted]
-
-
-def best_for(simplifier: Simplifier, distance: float, uv: float) -> Candidate | None:
-    """The fewest bytes found whose mean distance and mean UV error are at most so large.
-
-    None where not even all faces with the most bits are.
-    """
-    bits, uv_bits = simplifier.bits_for(distance), simplifier.uv_bits_for(uv)
-    tried = list(_approach(simplifier, bits, uv_bits, distance, uv))
-    good = [each for each in tried if each.errors.within(distance, uv)]
-    if not good:
-        return kept_whole(simplifier, distance, uv)
-    return min(good, key=lambda each: each.size)
-
-
-def kept_whole(simplifier: Simplifier, distance: float, uv: float) -> Candidate | None:
-    """All faces of the source with the fewest bits whose rounding stays within the errors.
-
-    None where not even the most bits do.
-    """
-    everything = len(simplifier.source.triangles)
-    bits, uv_bits = simplifier.bits_for(distance), simplifier.uv_bits_for(uv)
-    found = simplifier.candidate(everything, bits, uv_bits)
-    while not found.errors.within(distance, uv):
-        if max(bits, uv_bits) == MAX_GRID_BITS:
-            return None
-        far = found.errors.distance > distance
-        wrong = found.errors.uv > uv
-        # Where faces lie on each other, rounding puts another one in front: with UVs of its own.
-        finer = found if far else simplifier.candidate(everything, bits, uv_bits + 1)
-        helps = finer.errors.uv < simplifier.config.helping * found.errors.uv
-        bits, uv_bits = bits + (far or not helps), uv_bits + (wrong and helps)
-        found = finer if helps and not far else simplifier.candidate(everything, bits, uv_bits)
-    return found
-
-
-def _approach(
-    simplifier: Simplifier, bits: int, uv_bits: int, distance: float, uv: float
-) -> Iterator[Candidate]:
-    """Candidates that close in on the fewest faces within the errors, then some with other bits."""
-    config = simplifier.config
-    everything = len(simplifier.source.triangles)
-    few, many = 1.0, float(everything)
-    faces = np.sqrt(config.fewest * everything) if everything > config.fewest else everything
-    best: tuple[int, Candidate] | None = None
-    slope = -1.0
-    last: tuple[float, float] | None = None
-    for _ in range(config.trials):
-        asked = round(float(faces))
-        found = simplifier.candidate(asked, bits, uv_bits)
-        yield found
-        excess = float(np.log(_excess(found.errors, distance, uv)))
-        if excess <= 0:
-            many, best = min(many, faces), (asked, found)
-        else:
-            few = max(few, faces)
-        if -config.close <= excess <= 0 or many / few < 1 + config.close:
-            break
-        here = (float(np.log(faces)), excess)
-        if last is not None and abs(here[0] - last[0]) > config.close:
-            slope = float(np.clip((here[1] - last[1]) / (here[0] - last[0]), -3.0, -0.4))
-        last = here
-        # A little below the limit, so that what comes is within it.
-        faces = np.exp(here[0] - (excess + config.close / 2) / slope)
-        if not few < faces < many:
-            faces = np.sqrt(few * many)
-    if best is not None:
-        yield from _other_bits(simplifier, *best, distance, uv)
-
-
-def _other_bits(
-    simplifier: Simplifier, faces: int, found: Candidate, distance: float, uv: float
-) -> Iterator[Candidate]:
-    """Fewer bits for the same faces, as long as they stay within the errors."""
-    for change in ((1, 0), (0, 1)):
-        bits, uv_bits = found.bits, found.uv_bits
-        while min(bits - change[0], uv_bits - change[1]) >= 1:
-            bits, uv_bits = bits - change[0], uv_bits - change[1]
-            fewer = simplifier.candidate(faces, bits, uv_bits)
-            if not fewer.errors.within(distance, uv):
-                break
-            found = fewer
-            yield fewer
-
-
-def _excess(errors: Errors, distance: float, uv: float) -> float:
-    """By what factor the worse of both is too large."""
-    tiny = np.finfo(np.float64).tiny
-    return max(errors.distance / distance, errors.uv / uv, tiny)
 
 
 def _bits(extent: float, step: float) -> int:

@@ -145,6 +145,11 @@ def joined(first: Triangles, second: Triangles) -> Triangles:
     )
 
 
+def distinct_corners(mesh: TexturedMesh) -> BoolArray:
+    """(m,) bool: the faces of a mesh that `Triangles.of` takes, whose corners all differ."""
+    return _distinct(row_ids(mesh.positions)[mesh.faces])
+
+
 def _distinct(corners: Int64Array) -> BoolArray:
     """(m, 3) numbers -> (m,) bool: whether all three differ."""
     return np.asarray((corners != np.roll(corners, 1, axis=1)).all(axis=1))

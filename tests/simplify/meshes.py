@@ -9,13 +9,15 @@ import numpy as np
 from nispcodec.core.arrays import Float64Array
 from nispcodec.core.asset import TexturedMesh
 from nispcodec.core.document import Frame
+from nispcodec.core.mesh_part import MeshPart
 from nispcodec.simplify.config import FitConfig, LadderConfig
+from nispcodec.simplify.ladder import Simplifier
 from nispcodec.simplify.triangles import Triangles
 from tests.geometry import shapes
 
 UNIT = Frame((0.0, 0.0, 0.0), 1.0)
 SMALL_FIT = FitConfig(rounds=4, uv_rounds=3, fewest=3000, most=6000)
-SMALL = LadderConfig(samples=4000, fewest=30, trials=5, fit=SMALL_FIT)
+SMALL = LadderConfig(samples=4000, fewest=30, fit=SMALL_FIT)
 
 
 def triangles_of(mesh: TexturedMesh) -> Triangles:
@@ -70,3 +72,15 @@ def area(triangles: Triangles) -> float:
     """Of all faces."""
     a, b, c = np.moveaxis(triangles.corners, 1, 0)
     return float(np.linalg.norm(np.cross(b - a, c - a), axis=1).sum() / 2)
+
+
+def coded(part: MeshPart) -> int:
+    """Bytes as any coder takes: so many for each vertex and UV by their bits, and each face."""
+    bits = int(part.positions.max()).bit_length() * part.positions.size
+    bits += int(part.uvs.max(initial=0)).bit_length() * part.uvs.size
+    return (bits + 2 * len(part.faces)) // 8 + 10
+
+
+def simplifier(triangles: Triangles) -> Simplifier:
+    """Makes candidates quickly."""
+    return Simplifier.of(triangles, coded, SMALL)

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
+import numpy as np
 import pytest
 
 from nispcodec.metrics.compare import Reference
@@ -55,3 +58,10 @@ def test_both_means_must_be_within() -> None:
     assert errors.within(1e-3, 2e-3)
     assert not errors.within(0.9e-3, 2e-3)
     assert not errors.within(1e-3, 1.9e-3)
+
+
+def test_nothing_with_an_area_is_infinitely_far() -> None:
+    source = Source(ball(6))
+    flat = replace(source.triangles, positions=np.zeros_like(source.triangles.positions))
+    errors = Original.of(source.triangles, source.tree, 1000, 0).errors(flat.mesh())
+    assert not errors.within(1e6, 1e6)
