@@ -37,6 +37,12 @@ class Grid:
         extent = float(np.ptp(numbers, axis=0).max())
         return Grid(numbers.min(axis=0), extent / ((1 << bits) - 1) if extent > 0 else 1.0)
 
+    def around(self, numbers: Float64Array) -> Grid:
+        """The same grid, its origin moved along it to the lowest of other numbers (n, d)."""
+        if not len(numbers):
+            return self
+        return Grid(self.rounded(numbers.min(axis=0)), self.step)
+
     def integers(self, numbers: Float64Array) -> Int32Array:
         """(n, d) int32: the nearest."""
         return np.rint((numbers - self.origin) / self.step).astype(np.int32)
@@ -56,6 +62,13 @@ def quantized(
     none. Raises ValueError for bits below 1 or above MAX_GRID_BITS.
     """
     grid, uv_grid = Grid.of(triangles.positions, bits), Grid.of(triangles.uvs, uv_bits)
+    return on_grids(triangles, grid, uv_grid, crease_angle)
+
+
+def on_grids(
+    triangles: Triangles, grid: Grid, uv_grid: Grid, crease_angle: float | None = None
+) -> MeshPart:
+    """The same on grids that are given."""
     welded = _collapsed(triangles, grid.integers(triangles.positions))
     charts, firsts = charts_of(welded)
     return MeshPart(
