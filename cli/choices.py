@@ -50,6 +50,13 @@ def engines() -> Iterable[str]:
     return ENGINES
 
 
+def batch_engines() -> Iterable[str]:
+    """Where the assets of a batch are encoded."""
+    from nispcodec.catalogue.config import ENGINES
+
+    return ENGINES
+
+
 def texture_formats() -> Iterable[str]:
     """What images can be made again as."""
     from nispcodec.encode.config import TEXTURE_FORMATS

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from .parts import parts_of, why
 from .report import number, print_group, print_json, rate
 from .sources import Source, model_argument, parsed
 from .subcommand import json_option, subcommand
@@ -14,7 +15,6 @@ from .subcommand import json_option, subcommand
 if TYPE_CHECKING:
     from nispcodec.core.asset import Material, Texture, TextureMap
     from nispcodec.core.document import Document
-    from nispcodec.core.mesh_part import MeshPart
     from nispcodec.core.network import Network
 
 Facts = dict[str, Any]
@@ -52,8 +52,8 @@ def describe(document: Document, data: bytes) -> Facts:
             "radius": document.frame.radius,
         },
         "charts": len(document.chart_materials),
-        "half_thickness": document.field.half_thickness if document.field else 0.0,
-        "meshes": [_mesh(each) for each in document.meshes],
+        "held_as": why(document),
+        "parts": parts_of(document, data),
         "networks": {name: _network(each) for name, each in document.networks.items()},
         "materials": [_material(each, document) for each in document.materials],
         "textures": [_texture(each) for each in document.textures],
@@ -113,17 +113,6 @@ def _sections(data: bytes) -> list[Facts]:
         }
         for each in inspect(data)
     ]
-
-
-def _mesh(part: MeshPart) -> Facts:
-    return {
-        "triangles": len(part.faces),
-        "vertices": len(part.positions),
-        "charts": len(part.chart_materials),
-        "copies": len(part.placements),
-        "sheets": float(part.sheet.mean()),
-        "step": part.step,
-    }
 
 
 def _network(network: Network) -> Facts:

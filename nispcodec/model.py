@@ -15,6 +15,8 @@ from nispcodec.infer.parts import Union
 
 FRAMES = ("world", "normalized")
 FAR = 1e6
+# Points that are prepared, or looked up, at a time: both take many times the memory of the answer.
+PART = 1 << 18
 
 
 class NispModel:
@@ -81,8 +83,11 @@ class NispModel:
         materials, has_uv = self.document.chart_materials, self.document.chart_has_uv
         keys = np.where(has_uv, materials, -1 - materials)[charts]
         colors = np.empty((len(normalized), 4), np.float32)
-        for key in np.unique(keys).tolist():
-            colors[keys == key] = self._base_color(key, uvs[keys == key])
+        for start in range(0, len(keys), PART):
+            part = slice(start, start + PART)
+            for key in np.unique(keys[part]).tolist():
+                shown = keys[part] == key
+                colors[part][shown] = self._base_color(key, uvs[part][shown])
         return colors
 
     def project(self, points: ArrayLike, frame: str = "world") -> Float64Array:
@@ -139,15 +144,19 @@ class NispModel:
             raise QueryError(
                 f"points: expected numbers of shape (n, 3), found {array.dtype} of {array.shape}"
             )
-        normalized = self.document.frame.to_normalized(array) if frame == "world" else array
-        near = (np.abs(normalized) < FAR).all(axis=1)
-        if not near.all():
-            row = int(np.argmin(near))
-            raise QueryError(
-                f"points: expected finite numbers within {FAR:g} radii of the asset, "
-                f"found {array[row].tolist()} in row {row}"
-            )
-        return normalized.astype(np.float32)
+        normalized = np.empty(array.shape, np.float32)
+        for start in range(0, len(array), PART):
+            part = array[start : start + PART]
+            moved = self.document.frame.to_normalized(part) if frame == "world" else part
+            near = (np.abs(moved) < FAR).all(axis=1)
+            if not near.all():
+                row = int(np.argmin(near))
+                raise QueryError(
+                    f"points: expected finite numbers within {FAR:g} radii of the asset, "
+                    f"found {part[row].tolist()} in row {start + row}"
+                )
+            normalized[start : start + PART] = moved
+        return normalized
 
 
 def _checked(charts: IntArray, points: int, count: int) -> IntArray:

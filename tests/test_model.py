@@ -222,3 +222,15 @@ def test_geometry_only() -> None:
     assert (mesh.uv_faces == -1).all()
     assert not bare.uv(np.zeros((2, 3))).any()
     assert not bare.charts(np.zeros((2, 3))).any()
+
+
+def test_parts_of_many_points_are_as_all_of_them(monkeypatch: pytest.MonkeyPatch) -> None:
+    model = NispModel(tiny.document())
+    points = np.random.default_rng(0).uniform(1, 3, (50, 3))
+    whole = model.color(points), model.sdf(points)
+    monkeypatch.setattr("nispcodec.model.PART", 7)
+    np.testing.assert_array_equal(model.color(points), whole[0])
+    np.testing.assert_array_equal(model.sdf(points), whole[1])
+    points[33] = np.nan
+    with pytest.raises(QueryError, match="in row 33"):
+        model.sdf(points)

@@ -15,6 +15,7 @@ CORE = ("nispcodec/core", ":(glob)nispcodec/*.py")
 FORMAT = ("nispcodec/format",)
 TRAIN = ("nispcodec/geometry", "nispcodec/dataset", "nispcodec/train", MESH, FIT)
 ENCODE = (*CORE, *FORMAT, *TRAIN, "nispcodec/encode", "nispcodec/io")
+CATALOGUE = ("nispcodec/catalogue",)
 INFER = ("nispcodec/infer", DECODED)
 DECODE = (*INFER, "nispcodec/extract")
 METRICS = ("nispcodec/metrics",)
@@ -76,6 +77,11 @@ RESULTS = (
         beside=("paper.md",),
         asks="benchmarks.paper.command",
     ),
+    CommittedResult("batch.json", "benchmarks.catalogue.speed", (*ENCODE, *CATALOGUE)),
+    CommittedResult(
+        "batch_bookkeeping.json", "benchmarks.catalogue.bookkeeping", (*CORE, *CATALOGUE)
+    ),
+    CommittedResult("batch_chaos.json", "benchmarks.catalogue.chaos", (*CORE, *CATALOGUE)),
     CommittedResult("paper_preset.json", "benchmarks.paper.preset", ENCODE),
     CommittedResult("paper_pictures.json", "benchmarks.paper.pictures", (*ROUND_TRIP, *RENDER)),
     CommittedResult("pruning.json", "benchmarks.paper.pruning", (*TRAIN, *FORMAT)),
@@ -85,6 +91,7 @@ RESULTS = (
     CommittedResult("decoder.json", "benchmarks.studies.decoder", ROUND_TRIP),
     CommittedResult("format.json", "benchmarks.studies.format", (*CORE, *FORMAT)),
     CommittedResult("mesh_queries.json", "benchmarks.studies.mesh_queries", (*CORE, *INFER)),
+    CommittedResult("mesh_codings.json", "benchmarks.studies.mesh_codings", (*FORMAT, *RIVALS)),
     CommittedResult(
         "mesh_parts.json",
         "benchmarks.studies.mesh_parts",
@@ -96,4 +103,11 @@ RESULTS = (
         (*TRAIN, *FORMAT),
     ),
     CommittedResult("rounding_loss.json", "benchmarks.studies.rounding_loss", ROUND_TRIP),
+    CommittedResult("training_step.json", "benchmarks.studies.training_step", ("nispcodec/train",)),
+    CommittedResult(
+        "preparation_time.json",
+        "benchmarks.studies.preparation_time",
+        (*CORE, "nispcodec/geometry", "nispcodec/dataset"),
+    ),
+    CommittedResult("random_assets.json", "benchmarks.studies.random_assets", ENCODE),
 )

@@ -165,3 +165,8 @@ class Tuning:
     def geometry_of(self, preset: str) -> GeometryConfig:
         """The preset `paper` knows neither cut nor merged charts."""
         return replace(self.geometry, merging=None) if preset == "paper" else self.geometry
+
+    def sampling_of(self, preset: str) -> SamplingConfig:
+        """The share of the samples that the preset has time to look at."""
+        budget = self.training.budgets.get(preset)
+        return self.sampling.shared(budget.samples) if budget else self.sampling

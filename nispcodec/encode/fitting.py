@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 
+from nispcodec.core.cores import cores
 from nispcodec.core.document import Document
 from nispcodec.core.network import Network
 from nispcodec.core.progress import Listener
@@ -18,7 +19,6 @@ from nispcodec.encode.targets import (
 )
 from nispcodec.geometry.analysis import Analysis
 from nispcodec.geometry.triangles import area
-from nispcodec.infer.parallel import cores
 from nispcodec.train.backend.protocol import Engine
 from nispcodec.train.config import TrainConfig
 from nispcodec.train.task import Task
@@ -41,7 +41,7 @@ def fit(
     None at all where a preset's, whose bytes and probe error are told to `wanted`, are not.
     Raises FitError when a network does not converge.
     """
-    threads = config.threads or cores()
+    threads = cores()
 
     def run(tasks: list[Task], listen: Listener) -> dict[str, Network]:
         return fit_networks(tasks, config.seed, engine, threads, listen)

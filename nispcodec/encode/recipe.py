@@ -21,6 +21,7 @@ from nispcodec.encode.report import measured
 from nispcodec.encode.single_precision import short_frame, short_uv_map
 from nispcodec.encode.stages import with_overall
 from nispcodec.geometry.analysis import Analysis, analyze
+from nispcodec.infer.parallel import on_cores
 from nispcodec.model import NispModel
 from nispcodec.train.backend.choice import choose_engine
 
@@ -37,7 +38,14 @@ def encode(
     network does not converge, and, before the work, for a device or an engine that is not there,
     NispError for a target that cannot be met and for a package that is missing.
     """
-    config, tuning = config or EncodeConfig(), tuning or Tuning()
+    config = config or EncodeConfig()
+    with on_cores(config.threads):
+        return _encoded(mesh, config, progress, tuning or Tuning())
+
+
+def _encoded(
+    mesh: TexturedMesh, config: EncodeConfig, progress: Listener, tuning: Tuning
+) -> NispModel:
     progress = with_overall(progress, config, tuning.training)
     published = config.preset == "paper"
     engine = choose_engine(config.engine, config.device, published, progress)
@@ -60,7 +68,7 @@ def encode(
         chosen = choice.triangles(of_triangles)
         return NispModel(replace(chosen.document, info=measured(chosen, analysis, config)))
     progress(Progress(stage="samples"))
-    sampler = Sampler(analysis, config.seed, tuning.sampling)
+    sampler = Sampler(analysis, config.seed, tuning.sampling_of(config.preset))
     sets = (paper_training_sets if published else training_sets)(sampler)
     networks = fit(
         analysis, sets, config, tuning.training, engine, of_networks, choice.wants_field, progress

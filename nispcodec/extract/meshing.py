@@ -53,7 +53,7 @@ def textured_mesh(
     else:
         cut, charts = _fitted(field, surface, faces, config)
     own = _dressed(document, field, *_opened(field, cut, charts, config))
-    return replace(joined(document, own), warnings=report.warnings), report
+    return replace(joined(document, own), warnings=(*report.warnings, *_missed(cut, faces))), report
 
 
 def default_resolution(
@@ -67,6 +67,14 @@ def default_resolution(
     cells = affordable if thin > config.thin_share else config.least
     sheets = int(np.ceil(2 * CUBE / half_thickness)) if half_thickness else 0
     return min(max(cells, sheets), config.highest)
+
+
+def expected_faces(
+    network: Network, resolution: int, config: ResolutionConfig = ResolutionConfig()
+) -> int:
+    """About how many triangles a grid of so many cells along its edge gives."""
+    points, _ = near_surface(network, config.least)
+    return int(len(points) * config.faces_per_block * (resolution / config.least) ** 2)
 
 
 def _surface(
@@ -102,11 +110,23 @@ def _fitted(
     """The surface simplified until it has at most `faces` triangles after being cut."""
     target = faces
     for _ in range(config.simplify.face_fittings):
-        cut, charts = _cut(field, simplified(surface, target, config.simplify), config)
-        if len(cut.faces) <= faces:
+        fewer = simplified(surface, target, config.simplify)
+        cut, charts = _cut(field, fewer, config)
+        # Far from its target it is stuck: asked for less it takes as long, and gives the same.
+        if len(cut.faces) <= faces or len(fewer.faces) > config.simplify.stuck * target:
             break
         target = int(0.99 * target * faces / len(cut.faces))
     return cut, charts
+
+
+def _missed(surface: Surface, faces: int | None) -> tuple[str, ...]:
+    """A warning where there are more faces than asked for."""
+    if faces is None or len(surface.faces) <= faces:
+        return ()
+    return (
+        f"expected at most {faces:,} faces, found {len(surface.faces):,}: the surface has too many "
+        f"pieces and seams for fewer",
+    )
 
 
 def _opened(

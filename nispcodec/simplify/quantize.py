@@ -35,13 +35,21 @@ class Grid:
         if not len(numbers):
             return Grid(np.zeros(numbers.shape[1]), 1.0)
         extent = float(np.ptp(numbers, axis=0).max())
-        return Grid(numbers.min(axis=0), extent / ((1 << bits) - 1) if extent > 0 else 1.0)
+        step = extent / ((1 << bits) - 1) if extent > 0 else 1.0
+        # As a file holds them. Rounded down and up, so that no number is off the grid.
+        low = numbers.min(axis=0).astype(np.float32)
+        low = np.where(low > numbers.min(axis=0), np.nextafter(low, np.float32(-np.inf)), low)
+        return Grid(
+            low.astype(np.float64), float(np.nextafter(np.float32(step), np.float32(np.inf)))
+        )
 
     def around(self, numbers: Float64Array) -> Grid:
-        """The same grid, its origin moved along it to the lowest of other numbers (n, d)."""
+        """The same grid, its origin moved along it to just below all of other numbers (n, d)."""
         if not len(numbers):
             return self
-        return Grid(self.rounded(numbers.min(axis=0)), self.step)
+        steps = np.floor((numbers.min(axis=0) - self.origin) / self.step)
+        low = (self.origin + steps * self.step).astype(np.float32)
+        return Grid(low.astype(np.float64), self.step)
 
     def integers(self, numbers: Float64Array) -> Int32Array:
         """(n, d) int32: the nearest."""

@@ -13,6 +13,7 @@ from nispcodec import EncodeConfig
 from nispcodec.core.document import Document
 from nispcodec.core.errors import FitError, NispError
 from nispcodec.core.mesh_part import MeshPart
+from nispcodec.core.network import NetworkSpec
 from nispcodec.encode.choice import Choice, own_bytes
 from nispcodec.encode.config import FormConfig
 from nispcodec.encode.mesh_form import coded_bytes
@@ -21,7 +22,7 @@ from tests import tiny
 from tests.infer.parts import cube, part_of
 
 PART = part_of(cube())
-FIELD = tiny.document()
+FIELD = tiny.document(sdf=tiny.random_network(NetworkSpec((24, 24), 1)))
 SIZE = own_bytes(FIELD)
 EXACT = Errors(0.0, 0.0, 0.0, 0.0)
 OFF = Errors(0.01, 0.02, 0.01, 0.005)

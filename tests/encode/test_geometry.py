@@ -30,7 +30,7 @@ def test_a_box_stays_a_box(tmp_path: Path) -> None:
     assert report["geometry"]["larger"]["max"] < 1e-3  # type: ignore[index]
     assert report["uv"]["larger"]["mean"] < 1e-3  # type: ignore[index]
     points = np.random.default_rng(0).uniform(-1, 1, (200, 3))
-    assert np.array_equal(loaded.sdf(points), model.sdf(points))
+    np.testing.assert_array_equal(loaded.sdf(points), model.sdf(points))
     assert (loaded.sdf(0.9 * points) < 0).all()
     assert "engine" not in loaded.document.info
 

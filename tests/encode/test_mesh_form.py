@@ -27,7 +27,7 @@ def box() -> MeshForm:
 
 
 def test_a_nearer_surface_is_estimated_to_take_more_bytes(ball: MeshForm) -> None:
-    estimates = [ball.estimate(distance, 1e9) for distance in (1e-2, 4e-3, 2e-3)]
+    estimates = [ball.estimate(distance, 1e9) for distance in (7e-3, 4e-3, 1.5e-3)]
     assert estimates == sorted(set(estimates))
     assert ball.estimate(1e-12, 700.0) >= 700
 

@@ -11,9 +11,10 @@ import pytest
 
 import nispcodec
 from nispcodec import EncodeConfig, NispError, NispModel, TexturedMesh
+from nispcodec.core.cores import cores
 from nispcodec.core.errors import FitError
 from nispcodec.core.progress import Listener, Progress, silent
-from nispcodec.core.texture import reencode
+from nispcodec.core.texture import data_maps, reencode
 from nispcodec.edit.texture_padding import with_padded_textures
 from nispcodec.encode.config import PRESETS
 from nispcodec.format import pack, unpack
@@ -96,7 +97,8 @@ def test_textures_stay_are_padded_reencoded_or_left_out() -> None:
         for options in ({}, {"pad_textures": True, "texture_format": "webp"}, {"textures": False})
     )
     assert kept.textures == mesh.textures
-    assert smaller.textures == reencode(with_padded_textures(mesh, 100), "webp", 90)
+    data = data_maps(mesh.materials)
+    assert smaller.textures == reencode(with_padded_textures(mesh, 100), "webp", 90, data)
     assert {texture.mime for texture in smaller.textures} == {"image/webp"}
     assert smaller.materials == mesh.materials
     assert none.textures == ()
@@ -149,3 +151,9 @@ def test_faces_the_wrong_way_round_are_told_of() -> None:
     (warning,) = filter(None, told)
     assert "turned faces" in warning
     assert "16.67% of the area" in warning
+
+
+def test_all_stages_have_as_many_cores_as_asked() -> None:
+    seen = set()
+    encode(box_asset(), EncodeConfig(threads=1), lambda _: seen.add(cores()))
+    assert seen == {1}

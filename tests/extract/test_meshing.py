@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from nispcodec.core.network import Network
-from nispcodec.extract.config import ResolutionConfig
-from nispcodec.extract.isosurface import near_surface
+from nispcodec.extract.config import ResolutionConfig, SimplifyConfig
+from nispcodec.extract.isosurface import Surface, near_surface
 from nispcodec.extract.meshing import default_resolution
 from nispcodec.extract.thin_walls import thin_share
 from nispcodec.model import NispModel
@@ -69,3 +69,21 @@ def test_sheets_get_a_cell_for_half_their_thickness(half_thickness: float, expec
 
 def test_no_surface_at_all_has_a_default_too() -> None:
     assert default_resolution(tiny.octahedron(-1), 0.0) == ResolutionConfig.least
+
+
+def test_a_simplifier_that_is_stuck_is_not_asked_again(monkeypatch: pytest.MonkeyPatch) -> None:
+    asked = []
+
+    def stuck(surface: Surface, faces: int, config: SimplifyConfig) -> Surface:
+        asked.append(faces)
+        return surface
+
+    monkeypatch.setattr("nispcodec.extract.meshing.simplified", stuck)
+    mesh = NispModel(tiny.document()).to_mesh(24, faces=100)
+    assert asked == [100]
+    (warning,) = mesh.warnings
+    assert warning.startswith(f"expected at most 100 faces, found {len(mesh.faces):,}: ")
+
+
+def test_as_many_faces_as_asked_for_are_no_warning() -> None:
+    assert NispModel(tiny.document()).to_mesh(24, faces=300).warnings == ()
