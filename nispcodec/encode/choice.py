@@ -60,7 +60,7 @@ class Choice:
         found = self._rival(size, errors)
         if found is None:
             return Chosen(field, errors)
-        meshes = replace(field, field=None, meshes=(found.part,))
+        meshes = replace(field, field=None, meshes=found.parts)
         other = own_bytes(meshes)
         if self._config.target_size and found.errors.distance < errors.distance:
             return Chosen(meshes, found.errors, size)
@@ -68,14 +68,14 @@ class Choice:
             return Chosen(meshes, found.errors, size)
         return Chosen(field, errors, other)
 
-    def triangles(self, document: Callable[[MeshPart], Document]) -> Chosen:
+    def triangles(self, document: Callable[[tuple[MeshPart, ...]], Document]) -> Chosen:
         """The asset as triangles, as near as the preset or the target asks.
 
         Raises FitError for a target error that they miss, NispError for a target size that is too
         small.
         """
         found = self._wanted(document)
-        return Chosen(document(found.part), found.errors, self._field_bytes)
+        return Chosen(document(found.parts), found.errors, self._field_bytes)
 
     def _rival(self, size: int, errors: Errors) -> Candidate | None:
         """Triangles to set against a fitted field: no worse, or of no more bytes."""
@@ -87,7 +87,7 @@ class Choice:
             return None
         return self._form.best(errors.distance, size)
 
-    def _wanted(self, document: Callable[[MeshPart], Document]) -> Candidate:
+    def _wanted(self, document: Callable[[tuple[MeshPart, ...]], Document]) -> Candidate:
         config, forms = self._config, self._forms
         if config.target_error:
             found = self._form.within(config.target_error, math.inf)
@@ -100,7 +100,7 @@ class Choice:
         if not config.target_size:
             return self._form.best(nearest, self._field_bytes or math.inf)
         least = self._form.of_size(0.0)
-        besides = own_bytes(document(least.part)) - least.size
+        besides = own_bytes(document(least.parts)) - least.size
         found = self._form.of_size(config.target_size - besides)
         if besides + found.size > config.target_size:
             raise NispError(

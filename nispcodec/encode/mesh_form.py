@@ -24,13 +24,13 @@ from nispcodec.simplify.search import best_for
 from nispcodec.simplify.triangles import Triangles
 
 
-def coded_bytes(part: MeshPart) -> int:
-    """What a part adds to a file."""
-    return len(mesh.encode((part,)))
+def coded_bytes(parts: tuple[MeshPart, ...]) -> int:
+    """What parts add to a file."""
+    return len(mesh.encode(parts))
 
 
 class MeshForm:
-    """The faces of an asset that can be seen, as candidates for one mesh part.
+    """The faces of an asset that can be seen, as candidates for mesh parts.
 
     Distances are means in the normalized frame, UV errors means in the asset's UV.
     """

@@ -61,8 +61,8 @@ def _encoded(
     def of_networks(networks: Mapping[str, Network]) -> Document:
         return Document(frame, materials, textures, _field(networks, analysis, tuning))
 
-    def of_triangles(part: MeshPart) -> Document:
-        return Document(frame, materials, textures, meshes=(part,))
+    def of_triangles(parts: tuple[MeshPart, ...]) -> Document:
+        return Document(frame, materials, textures, meshes=parts)
 
     if config.geometry == "mesh":
         chosen = choice.triangles(of_triangles)

@@ -74,6 +74,25 @@ class FitConfig:
 
 
 @dataclass(frozen=True)
+class CopiesConfig:
+    """Which bodies are held once.
+
+    fewest        faces of such a body: fewer take no more bytes than a placement does
+    tolerance     largest distance of a copy's corners from where a placement has them, normalized
+                  frame: below what rounding moves
+    uv_tolerance  the same of UVs
+    alike         bodies whose areas by squares of sizes differ by more than this are not compared
+    most_tried    bodies that one is compared with: where many differ, time
+    """
+
+    fewest: int = 24
+    tolerance: float = 1e-4
+    uv_tolerance: float = 1e-4
+    alike: float = 0.02
+    most_tried: int = 16
+
+
+@dataclass(frozen=True)
 class LadderConfig:
     """Which candidates are made.
 
@@ -97,6 +116,7 @@ class LadderConfig:
     crease_angle: float | None = None
     collapse: CollapseConfig = CollapseConfig()
     fit: FitConfig = FitConfig()
+    copies: CopiesConfig = CopiesConfig()
 
 
 @dataclass(frozen=True)

@@ -47,15 +47,15 @@ class Told:
 
 
 def candidate(errors: Errors = EXACT) -> Any:
-    return SimpleNamespace(part=PART, errors=errors, size=coded_bytes(PART))
+    return SimpleNamespace(parts=(PART,), errors=errors, size=coded_bytes((PART,)))
 
 
 def choice(form: Told, **options: Any) -> Choice:
     return Choice(form, EncodeConfig(**options), FormConfig())  # type: ignore[arg-type]
 
 
-def as_mesh(part: MeshPart) -> Document:
-    return replace(FIELD, field=None, meshes=(part,))
+def as_mesh(parts: tuple[MeshPart, ...]) -> Document:
+    return replace(FIELD, field=None, meshes=parts)
 
 
 @pytest.mark.parametrize(
