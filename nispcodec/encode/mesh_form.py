@@ -25,7 +25,7 @@ from nispcodec.simplify.triangles import Triangles
 
 
 def coded_bytes(parts: tuple[MeshPart, ...]) -> int:
-    """What parts add to a file."""
+    """Bytes that parts add to a file."""
     return len(mesh.encode(parts))
 
 
@@ -44,13 +44,13 @@ class MeshForm:
 
     @cached_property
     def simplifier(self) -> Simplifier:
-        """Of the faces that can be seen."""
+        """The maker of candidates, from the faces that can be seen."""
         found = shown(self._analysis)
         triangles = Triangles.of(found.mesh, self._analysis.frame, found.faces, found.sheet)
         return Simplifier.of(triangles, coded_bytes, self._config.ladder, self._seed)
 
     def errors(self, document: Document) -> Errors:
-        """What the surface that a document decodes to is off."""
+        """How far the surface that a document decodes to is off."""
         self._progress(Progress(stage="surface"))
         mesh, _ = textured_mesh(document)
         positions = document.frame.to_normalized(mesh.positions)

@@ -32,7 +32,7 @@ class Shown:
 
 
 def shown(analysis: Analysis) -> Shown:
-    """What an analysis found of the faces: the pieces of its solid tell."""
+    """The faces as an analysis has them: the pieces of its solid tell."""
     mesh, solid, config = analysis.mesh, analysis.solid, analysis.config.solid
     count = len(mesh.faces)
     own = normals(mesh.corners)[solid.parents]

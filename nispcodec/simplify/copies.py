@@ -31,7 +31,7 @@ class Group:
     def part(
         self, triangles: Triangles, grid: Grid, uv_grid: Grid, crease_angle: float | None
     ) -> MeshPart:
-        """What was made of the bodies, with all placements."""
+        """The part made of the bodies, with all placements."""
         part = on_grids(triangles, grid, uv_grid, crease_angle)
         placements = []
         for placement, by_patch in zip(self.placements, self.materials, strict=True):
@@ -59,7 +59,7 @@ class Copies:
     def parts(
         self, triangles: Triangles, bits: int, uv_bits: int, crease_angle: float | None = None
     ) -> tuple[MeshPart, ...]:
-        """What was made of the triangles by simplifying as parts, rounded as `quantized` rounds.
+        """The simplified triangles as parts, rounded as `quantized` rounds.
 
         All have one grid. A group of which no face is left has no part.
         """
@@ -70,7 +70,7 @@ class Copies:
         )
 
     def scene(self, triangles: Triangles) -> TexturedMesh:
-        """What was made of the triangles with all its copies, in the materials of the bodies."""
+        """The triangles with all their copies, in the materials of the bodies."""
         pieces = self._pieces(triangles)
         return scene([(piece.mesh(), group.placements) for group, piece in pieces])
 
