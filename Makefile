@@ -60,6 +60,7 @@ test: lint docs package
 fuzz: setup
 	$(BIN)/pip install --disable-pip-version-check -q -c constraints.txt -e '.[fuzz]'
 	$(BIN)/python -m tests.fuzz.fuzz_unpack -runs=$(RUNS) -max_len=4096 -rss_limit_mb=8192 -print_final_stats=1 build/corpus
+	$(BIN)/python -m tests.fuzz.fuzz_mesh -runs=$(RUNS)
 
 # Built apart, and run from there. Python itself has no sanitizer, so theirs is loaded before it; it
 # frees little at its end, so leaks are not told: a test of ours looks at the memory instead.

@@ -83,6 +83,7 @@ RESULTS = (
     CommittedResult("crossover.json", "benchmarks.studies.crossover", (*ROUND_TRIP, *RIVALS)),
     CommittedResult("decoder.json", "benchmarks.studies.decoder", ROUND_TRIP),
     CommittedResult("format.json", "benchmarks.studies.format", (*CORE, *FORMAT)),
+    CommittedResult("mesh_codings.json", "benchmarks.studies.mesh_codings", (*FORMAT, *RIVALS)),
     CommittedResult("mesh_queries.json", "benchmarks.studies.mesh_queries", (*CORE, *INFER)),
     CommittedResult(
         "pruning_or_quantizing.json",

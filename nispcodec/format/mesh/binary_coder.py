@@ -25,7 +25,7 @@ PRIORS = table()
 
 
 class BinaryCoder:
-    """What encoder and decoder share: counters, weights, and the calls that models are made of.
+    """The part that encoder and decoder share: counters, weights, the calls of all models.
 
     Every method takes the value to encode, of which a decoder takes no notice, and returns the
     value: models are written once.

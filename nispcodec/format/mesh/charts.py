@@ -1,4 +1,4 @@
-"""What holds for pieces of a surface: sheets, the charts' materials, whether they have UVs."""
+"""All that holds for pieces of a surface: sheets, the charts' materials, whether they have UVs."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ class Charts:
 
 
 def code(coder: BinaryCoder, joined: Int64Array, given: Given | None) -> Charts:
-    """The charts of a surface; `joined` are its twins but at seams."""
+    """The charts of a surface; `joined` are its twins but at seams. Raises FormatError."""
     faces, first = pieces(joined)
     charts = given.part.face_charts[given.faces[first]] if given else None
     wanted = [(True, 0)] * len(first)
@@ -74,10 +74,16 @@ def code(coder: BinaryCoder, joined: Int64Array, given: Given | None) -> Charts:
 
 
 def _highest(given: Given) -> int:
-    """The highest material of charts and their copies. Raises FormatError for negative ones."""
+    """The highest material of charts and their copies.
+
+    Raises FormatError for negative ones, and for copies with other than one for each chart.
+    """
     part = given.part
     tables = [part.chart_materials]
     tables += [each.materials for each in part.placements if each.materials is not None]
+    charts = len(part.chart_materials)
+    if any(len(table) != charts for table in tables):
+        raise FormatError(SECTION, "placement materials", charts, [len(each) for each in tables])
     materials = np.stack(tables)[:, np.unique(part.face_charts)]
     if materials.min() < 0:
         raise FormatError(SECTION, "materials", "0 or more", materials.min())

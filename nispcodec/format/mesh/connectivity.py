@@ -151,7 +151,7 @@ class Growth:
         return None
 
     def _grow(self, gate: int) -> None:
-        """What lies over one gate."""
+        """The face over one gate, or that there is none."""
         face = self._known_face(gate)
         action, third = self._known_action(gate, face)
         action = self._code_action(gate, action)

@@ -12,19 +12,21 @@ from collections.abc import Callable
 
 import numpy as np
 
-from nispcodec.core.arrays import AnyArray, Int32Array, Int64Array
+from nispcodec.core.arrays import AnyArray, BoolArray, Int32Array, Int64Array
 from nispcodec.core.connectivity import connected_components, edge_ids
 
 MANY = 16
 """Sides of one edge, from which on none of them meet: choosing takes the square of their number."""
 
 
-def twins(faces: Int32Array, unlike: Callable[[int, int], int]) -> Int64Array:
+def twins(faces: Int32Array, sheet: BoolArray, unlike: Callable[[int, int], int]) -> Int64Array:
     """(m, 3) vertices -> (3 m,) int64: the side that each side meets, -1 at borders.
 
+    Faces of sheets (m,) and others do not meet.
     unlike: how little two sides belong together, where one edge has more of them than two.
     """
     edge, way = edge_ids(faces.astype(np.int64))
+    edge = 2 * edge + np.repeat(sheet, 3)
     order = np.argsort(edge, kind="stable")
     starts = np.flatnonzero(np.r_[True, edge[order][1:] != edge[order][:-1]])
     sizes = np.diff(np.r_[starts, len(edge)])

@@ -14,7 +14,7 @@ SIGN, DIGIT, UP, FURTHER_UP, DOWN = 0, 1, 2, 3, 20
 
 
 class Context(NamedTuple):
-    """What is known beside a number: how long it should be, and the contexts of the coder."""
+    """Knowledge beside a number: how long it should be, and the contexts of the coder."""
 
     length: int
     general: int = 0

@@ -11,7 +11,7 @@ from collections.abc import Iterator
 MOST = 3
 HINGES = 16
 Hinges = list[tuple[int, int, int]]
-"""Of each face with two known nodes these two, a and b, and the node that lies over their edge, c,
+"""For each face with two known nodes these two, a and b, and c, the node that lies over their edge;
 -1 where none is known there."""
 
 

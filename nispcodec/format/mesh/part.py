@@ -92,7 +92,7 @@ def _singles(coder: BinaryCoder, given: tuple[float, ...], slot: int, name: str)
 def _surface(coder: BinaryCoder, count: int, part: MeshPart | None) -> tuple[Surface, Given | None]:
     if part is None:
         return Growth(coder, None).grow(count), None
-    twin = manifold.twins(part.faces, _unlike(part))
+    twin = manifold.twins(part.faces, part.sheet, _unlike(part))
     known = Known(twin.tolist(), manifold.fans(twin).tolist(), [-1] * count)
     surface = Growth(coder, known).grow(count)
     return surface, Given(part, np.array(known.sides), np.array(surface.twin))

@@ -19,7 +19,7 @@ SINGLE = {
     slots.BESIDE: 151,
     slots.SEEN: 48,
 }
-"""Of single decisions."""
+"""Single decisions."""
 
 NUMBERS = {
     slots.STEPS: ((254, 252, 66, 54, 21, 8), ()),
@@ -38,7 +38,7 @@ NUMBERS = {
     slots.UV_SECOND: ((32, 52, 56, 25, 235, 21), (150, 170, 184, 181, 208, 212, 239, 250, 219)),
     slots.UV_THIRD: ((155, 160, 100, 56, 50, 70, 92, 235, 128, 37), (155, 160, 190, 236, 188, 243)),
 }
-"""Of integers: whether they are longer than expected, and longer still; whether shorter."""
+"""Integers: whether they are longer than expected, and longer still; whether shorter."""
 
 
 SURE = 4

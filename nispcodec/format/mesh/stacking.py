@@ -30,7 +30,7 @@ class Stacking:
         self._hits = 0
 
     def anywhere(self, wanted: Pair) -> Pair | None:
-        """Of a chart's first node: any that came before."""
+        """For a chart's first node: any that came before. Raises FormatError."""
         if not self._pairs:
             return None
         number = self._number.get(wanted)
@@ -39,7 +39,7 @@ class Stacking:
         return self._pairs[self._coder.below(number or 0, len(self._pairs), "uv")]
 
     def beside(self, start: Pair, length: int, wanted: Pair) -> Pair | None:
-        """Of a chart's second node, so far from the first in space: one that lay beside it."""
+        """For a chart's second node, so far from the first: one beside it. Raises FormatError."""
         known = self._beside.get(start, {})
         if not known or not self._coder.bit(wanted in known, slots.BESIDE, 0, 0, 0):
             return None
@@ -51,7 +51,7 @@ class Stacking:
         return ranked[rank]
 
     def beyond(self, sides: list[tuple[Pair, Pair, Pair | None]], wanted: Pair) -> Pair | None:
-        """Of another node: the one that most faces had which lay over the same edges.
+        """For another node: the one that most faces had which lay over the same edges.
 
         sides: the ends of each edge, and what its own other face has there.
         """

@@ -81,14 +81,14 @@ class _Texture:
         return isqrt(_dot(edge, edge))
 
     def _first(self, wanted: Pair) -> Pair:
-        """Of a chart: near the node before, if anywhere."""
+        """The first of a chart: near the node before, if anywhere."""
         middle = self._top >> 1
         expected: Pair = self.found[self._last] if self._last >= 0 else (middle, middle)
         length = max(self._bits - 3, 0)
         return self._coordinates(wanted, expected, slots.UV_START, [length, length], [0, 0], [0, 0])
 
     def _second(self, start: Pair, length: int, wanted: Pair) -> Pair:
-        """Of a chart: about as far from the first as edges of this length are elsewhere."""
+        """The second of a chart: as far from the first as edges of its length are elsewhere."""
         coder = self._coder
         size = min(self._wide * length // self._far, 4 << self._bits)
         context = Context(size.bit_length(), 0, quarter(size), 0)
@@ -107,7 +107,7 @@ class _Texture:
         return u, v
 
     def _continued(self, node: int, hinges: Hinges, wanted: Pair) -> Pair:
-        """Of a node that has faces with known ones."""
+        """The coordinates of a node that has faces with known ones."""
         guesses = [self._guess(node, *hinge) for hinge in hinges]
         whole = [guess for guess in guesses if guess.whole]
         expected = _mean(whole) if whole else self._turned(guesses, wanted)
@@ -152,7 +152,7 @@ class _Texture:
         return right if self._flip else left
 
     def _guess(self, node: int, a: int, b: int, c: int) -> Guess:
-        """What the face of node, a and b expects; c is the node beyond the edge a b, or -1."""
+        """How the face of node, a and b goes on; c is the node beyond the edge a b, or -1."""
         origin = self._places[a]
         (ua, va), (ub, vb) = self.found[a], self.found[b]
         u, v = ub - ua, vb - va
@@ -215,6 +215,6 @@ def _fine(vectors: list[Vector]) -> list[Vector]:
 
 
 def _foot(edge: Vector, square: int, point: Vector) -> tuple[int, int]:
-    """Of a point, times the edge's length: its part along the edge, its height above it."""
+    """A point's part along the edge and its height above it, times the edge's length."""
     part = _dot(edge, point)
     return part, isqrt(max(square * _dot(point, point) - part * part, 0))

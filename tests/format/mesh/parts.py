@@ -145,7 +145,7 @@ def _dressed(
         chart_materials=generator.integers(0, 300, charts).astype(np.int32),
         chart_has_uv=has_uv,
         creases=_creases(generator, faces, len(positions)),
-        sheet=np.full(count, generator.random() < 0.5),
+        sheet=generator.random(count) < generator.choice([0.0, 0.5, 1.0]),
         origin=tuple(generator.normal(size=3).astype(np.float32).tolist()),
         placements=(Placement(),) * int(generator.integers(1, 3)),
     )

@@ -15,7 +15,7 @@ from tests.format.mesh.parts import box, grid, parts
 
 
 def grown(made: MeshPart) -> tuple[bytes, Surface, Known]:
-    twin = manifold.twins(made.faces, lambda one, other: 0)
+    twin = manifold.twins(made.faces, made.sheet, lambda one, other: 0)
     known = Known(twin.tolist(), manifold.fans(twin).tolist(), [-1] * len(made.faces))
     encoder = Encoder()
     surface = Growth(encoder, known).grow(len(made.faces))

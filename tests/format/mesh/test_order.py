@@ -13,7 +13,7 @@ from tests.format.mesh.parts import grid, parts
 @given(parts())
 def test_each_once_and_only_from_known_ones(made: MeshPart) -> None:
     corners = made.faces.ravel().tolist()
-    twin = manifold.twins(made.faces, lambda one, other: 0).tolist()
+    twin = manifold.twins(made.faces, made.sheet, lambda one, other: 0).tolist()
     count = max(corners) + 1
     known: set[int] = set()
     for node, hinges, near in visits(corners, twin, [False] * count):
@@ -28,7 +28,7 @@ def test_each_once_and_only_from_known_ones(made: MeshPart) -> None:
 
 def test_in_a_grid_most_are_predicted_from_two_faces() -> None:
     flat = grid(10)
-    twin = manifold.twins(flat.faces, lambda one, other: 0).tolist()
+    twin = manifold.twins(flat.faces, flat.sheet, lambda one, other: 0).tolist()
     counts = [
         len(hinges) for _, hinges, _ in visits(flat.faces.ravel().tolist(), twin, [False] * 121)
     ]

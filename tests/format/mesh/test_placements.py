@@ -62,6 +62,8 @@ def test_materials_follow_their_charts() -> None:
         (Placement(rotation=(1.0, 1.0, 0.0, 0.0)), "rotation"),
         (Placement(scale=0.0), "scale"),
         (Placement(scale=-1.0), "scale"),
+        (Placement(materials=np.array([-1], np.int32)), "materials"),
+        (Placement(materials=np.zeros(2, np.int32)), "placement materials"),
     ],
 )
 def test_refused(wrong: Placement, field: str) -> None:

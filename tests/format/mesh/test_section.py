@@ -6,7 +6,7 @@ from contextlib import suppress
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from nispcodec.core.errors import FormatError
@@ -15,10 +15,13 @@ from nispcodec.format.constants import MESH_FACES_PER_BYTE
 from nispcodec.format.mesh import decode, encode
 from tests.format.mesh.parts import box, faces_of, grid, part, parts, vertices_of
 
+# Of 25 milliseconds each.
+EXAMPLES = 40
 SCALARS = ("step", "origin", "uv_step", "uv_origin")
 
 
 @given(parts())
+@settings(max_examples=EXAMPLES)
 def test_what_comes_back(made: MeshPart) -> None:
     (found,) = decode(encode((made,)))
     assert faces_of(found) == faces_of(made)
@@ -28,6 +31,7 @@ def test_what_comes_back(made: MeshPart) -> None:
 
 
 @given(parts())
+@settings(max_examples=EXAMPLES)
 def test_what_was_decoded_encodes_to_the_same_again(made: MeshPart) -> None:
     data = encode((made,))
     again = encode(decode(data))
@@ -40,6 +44,7 @@ def test_what_was_decoded_encodes_to_the_same_again(made: MeshPart) -> None:
 
 
 @given(st.lists(parts(), max_size=3))
+@settings(max_examples=EXAMPLES)
 def test_several_parts(made: list[MeshPart]) -> None:
     found = decode(encode(tuple(made)))
     assert [faces_of(each) for each in found] == [faces_of(each) for each in made]

@@ -42,7 +42,7 @@ def listed(value: Any) -> Any:
 
 
 @given(st.lists(parts(), max_size=2))
-@settings(max_examples=50)
+@settings(max_examples=30)
 def test_it_reads_what_we_write(made: list[MeshPart]) -> None:
     data = encode(tuple(made))
     assert listed(READ(data)) == [plain(each) for each in decode(data)]
@@ -59,7 +59,7 @@ def test_known_shapes() -> None:
 
 
 @given(parts(), st.data())
-@settings(max_examples=50)
+@settings(max_examples=30)
 def test_it_refuses_what_we_refuse(made: MeshPart, data: st.DataObject) -> None:
     changed = bytearray(encode((made,)))
     place = data.draw(st.integers(0, len(changed) - 1))
