@@ -8,24 +8,15 @@ from __future__ import annotations
 
 import struct
 from collections.abc import Iterator
-from typing import Any, NamedTuple
+from typing import Any
 
 import msgpack
 import numpy as np
 import zstandard
 
 from nispcodec.format.codings import entropy
-from tests.conformance.builder import Row, change, container
-
-
-class Malformed(NamedTuple):
-    """A file that must be refused, and why."""
-
-    name: str
-    data: bytes
-    section: str
-    field: str
-
+from tests.conformance.builder import Malformed, Row, change, container
+from tests.conformance.malformed_mesh import mesh_malformed
 
 FRAME = [0.0, 0.0, 0.0, 1.0]
 META: dict[int, Any] = {1: FRAME, 2: {1: {1: [2]}}, 5: b"\0"}
@@ -90,6 +81,7 @@ def all_malformed() -> Iterator[Malformed]:
     yield from _tensors()
     yield from _sparse()
     yield from _entropy()
+    yield from mesh_malformed()
 
 
 def _headers() -> Iterator[Malformed]:

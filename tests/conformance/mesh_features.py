@@ -145,12 +145,12 @@ def mesh_features(image: Texture, beside: Document) -> Iterator[tuple[str, Docum
     yield "mesh-stacked", painted(image, _stacked())
     yield "mesh-creases", asset(_creased())
     yield "mesh-edge-of-four", asset(_edge_of_four())
-    yield "mesh-sheets-in-one-edge", asset(_three_sheets())
+    yield "mesh-sheets-in-one-edge", asset(three_sheets())
     yield "mesh-inside-out", asset(part(box_corners(), CUBE_FACES[:, ::-1]))
     yield "mesh-overlap", asset(_overlap())
     yield "mesh-open", asset(part(box_corners(), CUBE_FACES[:-1]))
     yield "mesh-without-area", asset(_without_area())
-    yield "mesh-soup", painted(image, _soup())
+    yield "mesh-soup", painted(image, soup())
     yield "mesh-fine", asset(_fine())
     yield "mesh-copies", painted(image, dataclasses.replace(_partly(), placements=_copies()))
     yield "mesh-copy-moved", asset(dataclasses.replace(_wedge(), placements=_copies()[1:2]))
@@ -234,7 +234,7 @@ def _edge_of_four() -> MeshPart:
     return part(corners, faces.ravel()[both], face_charts=np.arange(24) // 12)
 
 
-def _three_sheets() -> MeshPart:
+def three_sheets() -> MeshPart:
     """Three half planes that end in one line."""
     line = np.array([[0, 0, -0.6], [0, 0, 0.6]])
     turns = np.array([0.3, 2.1, 4.5])
@@ -267,7 +267,7 @@ def _without_area() -> MeshPart:
     )
 
 
-def _soup() -> MeshPart:
+def soup() -> MeshPart:
     """Triangles that have little to do with each other, with UVs and edges of many faces."""
     generator = np.random.default_rng(8)
     faces = np.array([generator.permutation(12)[:3] for _ in range(24)])
