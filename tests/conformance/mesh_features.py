@@ -148,7 +148,7 @@ def mesh_features(image: Texture, beside: Document) -> Iterator[tuple[str, Docum
     yield "mesh-sheets-in-one-edge", asset(three_sheets())
     yield "mesh-inside-out", asset(part(box_corners(), CUBE_FACES[:, ::-1]))
     yield "mesh-overlap", asset(_overlap())
-    yield "mesh-open", asset(part(box_corners(), CUBE_FACES[:-1]))
+    yield "mesh-open", asset(part(box_corners(), CUBE_FACES[:6]))
     yield "mesh-without-area", asset(_without_area())
     yield "mesh-soup", painted(image, soup())
     yield "mesh-fine", asset(_fine())
@@ -178,11 +178,11 @@ def _scaled_uvs() -> MeshPart:
 
 
 def _body_and_sheet() -> MeshPart:
-    """A box, and beside it two faces that have no inside."""
+    """A box of two charts, and beside it two faces that have no inside."""
     sheet = np.array([[0.5, -0.6, -0.5], [0.6, 0.6, -0.4], [0.5, 0.5, 0.6], [0.7, -0.6, 0.5]])
     faces = np.concatenate([CUBE_FACES, [[8, 9, 10], [8, 10, 11]]])
     corners = np.concatenate([box_corners(0.5, (-0.2, 0, 0)), sheet])
-    return part(corners, faces, sheet=np.arange(14) >= 12, face_charts=(np.arange(14) >= 12))
+    return part(corners, faces, sheet=np.arange(14) >= 12, face_charts=np.arange(14) // 6)
 
 
 def _charts() -> MeshPart:
