@@ -55,8 +55,8 @@ def document() -> Document:
         materials=(MATERIAL,),
         textures=(),
         field=Field(
-            ChartTable(np.zeros(1, np.int32), np.zeros(1, np.bool_)),
-            Network(NetworkSpec((1,), 1, activation="relu", mirror=7), tensors),
+            charts=ChartTable(np.zeros(1, np.int32), np.zeros(1, np.bool_)),
+            sdf=Network(NetworkSpec((1,), 1, activation="relu", mirror=7), tensors),
         ),
     )
 
