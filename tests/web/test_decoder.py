@@ -1,0 +1,80 @@
+"""The JavaScript decoder in node: every conformance file, every malformed one."""
+
+from __future__ import annotations
+
+import base64
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from nispcodec.core.document import Document
+from nispcodec.core.texture import decode_image
+from nispcodec.format import unpack
+from nispcodec.infer.evaluate import gradient
+from tests.web.programs import answers
+
+CONFORMANCE = Path(__file__).parent.parent / "conformance"
+FILES = sorted(CONFORMANCE.glob("*.nisp"))
+MALFORMED = json.loads((CONFORMANCE / "malformed" / "expected.json").read_text())
+TOLERANCE = json.loads((CONFORMANCE / "tolerance.json").read_text())
+
+
+def images(document: Document) -> list[dict[str, Any]]:
+    """The document's images, decoded, as answers.mjs takes them: node has no image decoder."""
+    return [
+        {
+            "width": pixels.shape[1],
+            "height": pixels.shape[0],
+            "floats": base64.b64encode(pixels.tobytes()).decode(),
+        }
+        for pixels in map(decode_image, document.textures)
+    ]
+
+
+def request_of(path: Path, kernel: str) -> dict[str, Any]:
+    points = json.loads(path.with_suffix(".json").read_text())["points"]
+    found = images(unpack(path.read_bytes()))
+    return {"path": str(path), "points": points, "images": found, "kernel": kernel}
+
+
+@pytest.fixture(scope="module", params=["wasm", "plain"])
+def found(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Any:
+    """Answers by name of the file, for either way of computing."""
+    requests = [request_of(path, request.param) for path in FILES]
+    listed = answers(requests, tmp_path_factory.mktemp("answers"))
+    return {path.stem: answer for path, answer in zip(FILES, listed, strict=True)}
+
+
+@pytest.mark.parametrize("path", FILES, ids=[path.stem for path in FILES])
+def test_it_answers_as_the_specification_says(path: Path, found: Any) -> None:
+    wanted, answer = json.loads(path.with_suffix(".json").read_text()), found[path.stem]
+    assert "error" not in answer, answer
+    scale = np.maximum(np.abs(unpack(path.read_bytes()).charts.uv_scale), 1)
+    for kind, unit in (("sdf", 1.0), ("uv", scale), ("color", 1.0)):
+        expected = np.array(wanted[kind])
+        off = np.abs(np.reshape(answer[kind], expected.shape) - expected) / unit
+        assert off.max() <= TOLERANCE[kind], kind
+    assert answer["chart"] == wanted["chart"]
+
+
+@pytest.mark.parametrize("path", FILES, ids=[path.stem for path in FILES])
+def test_gradients_are_those_of_the_library(path: Path, found: Any) -> None:
+    points = np.array(json.loads(path.with_suffix(".json").read_text())["points"], np.float32)
+    _, expected = gradient(unpack(path.read_bytes()).sdf, points)
+    off = np.reshape(found[path.stem]["gradient"], expected.shape) - expected
+    assert (np.abs(off) <= 2e-3 * (1 + np.linalg.norm(expected, axis=1)[:, None])).all()
+
+
+def test_malformed_files_are_refused(tmp_path: Path) -> None:
+    paths = [CONFORMANCE / "malformed" / f"{name}.nisp" for name in MALFORMED]
+    request: dict[str, Any] = {"points": [], "images": [], "kernel": "plain"}
+    for name, answer in zip(
+        MALFORMED,
+        answers([{**request, "path": str(path)} for path in paths], tmp_path),
+        strict=True,
+    ):
+        assert answer.get("error") == "NISPError", (name, answer)
+        assert "expected" in answer["message"], name
