@@ -1,0 +1,94 @@
+/**
+ * Images as the specification wants their texels: embedded color profiles, gamma and orientation
+ * are ignored. Browsers can be told to ignore profiles, but not orientation: it is taken out.
+ */
+
+/**
+ * @param {import("../decoder/document.js").Texture} texture
+ * @returns {Promise<ImageBitmap>} straight alpha, top row first
+ */
+export function decodeImage({ mime, data }) {
+  const blob = new Blob([/** @type {BlobPart} */ (withoutOrientation(mime, data))], { type: mime });
+  return createImageBitmap(blob, { colorSpaceConversion: "none", premultiplyAlpha: "none" });
+}
+
+/**
+ * The image file without what turns it: EXIF in PNG, JPEG and WebP; `irot` of AVIF set to 0.
+ * A file of another structure is returned as it is: the image decoder says what is wrong with it.
+ * @param {string} mime
+ * @param {Uint8Array} data
+ * @returns {Uint8Array}
+ */
+export function withoutOrientation(mime, data) {
+  if (mime === "image/png") return withoutParts(data, 8, pngPart, "eXIf");
+  if (mime === "image/jpeg") return withoutParts(data, 2, jpegPart, "Exif");
+  if (mime === "image/webp") return renamedExif(data);
+  return withoutRotation(data);
+}
+
+/** @typedef {{end: number, name: string}|null} Part null where parts end */
+
+/** @param {Uint8Array} data @param {number} start @param {(data: Uint8Array, at: number) => Part} partAt @param {string} unwanted */
+function withoutParts(data, start, partAt, unwanted) {
+  const kept = [data.subarray(0, start)];
+  let at = start;
+  for (let part = partAt(data, at); part && part.end <= data.length; part = partAt(data, at)) {
+    if (part.name !== unwanted) kept.push(data.subarray(at, part.end));
+    at = part.end;
+  }
+  kept.push(data.subarray(at));
+  const whole = new Uint8Array(kept.reduce((sum, part) => sum + part.length, 0));
+  let place = 0;
+  for (const part of kept) {
+    whole.set(part, place);
+    place += part.length;
+  }
+  return whole;
+}
+
+/** @param {Uint8Array} data @param {number} at */
+function textAt(data, at) {
+  return String.fromCharCode(...data.subarray(at, at + 4));
+}
+
+/** A chunk. @param {Uint8Array} data @param {number} at @returns {Part} */
+function pngPart(data, at) {
+  if (at + 12 > data.length) return null;
+  const length = data[at] * 2 ** 24 + ((data[at + 1] << 16) | (data[at + 2] << 8) | data[at + 3]);
+  return { end: at + 12 + length, name: textAt(data, at + 4) };
+}
+
+/** A segment before the image's own data. @param {Uint8Array} data @param {number} at @returns {Part} */
+function jpegPart(data, at) {
+  const marker = data[at + 1];
+  if (at + 8 > data.length || data[at] !== 0xff || marker === 0xda || marker < 0xc0) return null;
+  const name = marker === 0xe1 ? textAt(data, at + 4) : "";
+  return { end: at + 2 + ((data[at + 2] << 8) | data[at + 3]), name };
+}
+
+/** Under another name the chunk says nothing. @param {Uint8Array} data */
+function renamedExif(data) {
+  const view = new DataView(data.buffer, data.byteOffset, data.byteLength);
+  for (let at = 12; at + 8 <= data.length; ) {
+    const length = view.getUint32(at + 4, true);
+    if (textAt(data, at) === "EXIF") {
+      const copy = data.slice();
+      copy.set([0x6e, 0x6f, 0x6e, 0x65], at);
+      if (textAt(copy, 12) === "VP8X") copy[20] &= ~8;
+      return copy;
+    }
+    at += 8 + length + (length & 1);
+  }
+  return data;
+}
+
+/** @param {Uint8Array} data */
+function withoutRotation(data) {
+  // The box is 9 bytes: its size, its name, and the angle in the last.
+  const box = [0, 0, 0, 9, 0x69, 0x72, 0x6f, 0x74];
+  const at = data.findIndex((_, i) => box.every((byte, k) => data[i + k] === byte));
+  if (at < 0) return data;
+  const copy = data.slice();
+  copy[at + 8] = 0;
+  return copy;
+}
