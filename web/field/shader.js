@@ -163,9 +163,12 @@ float nispFree(vec3 p, vec3 direction) {
   float away = float(texelFetch(nispOccupancy, place, 0).x);
   if (away == 0.0) return 0.0;
   vec3 low = (vec3(place) - (away - 1.0)) * cell - NISP_CUBE;
-  vec3 ends = mix(low, low + (2.0 * away - 1.0) * cell, step(0.0, direction));
-  vec3 spans = (ends - p) / mix(vec3(1e-12), direction, step(1e-12, abs(direction)));
-  spans = mix(vec3(1e9), spans, step(1e-12, abs(direction)));
+  vec3 high = low + (2.0 * away - 1.0) * cell;
+  vec3 spans;
+  for (int axis = 0; axis < 3; axis++) {
+    float towards = direction[axis];
+    spans[axis] = abs(towards) < 1e-9 ? 1e9 : ((towards > 0.0 ? high[axis] : low[axis]) - p[axis]) / towards;
+  }
   return max(min(spans.x, min(spans.y, spans.z)), 0.0) + 1e-5;
 }
 
