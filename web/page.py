@@ -80,7 +80,9 @@ def original_data(mesh: TexturedMesh, frame: Frame) -> dict[str, Any]:
         uvs = part.uvs if key % 2 else np.zeros((len(part.positions), 2))
         parts.append((frame.to_normalized(part.positions), normals[part.sources], uvs, faces))
         count = faces.size
-        groups.append({"start": start, "count": count, "material": key // 2, "textured": bool(key % 2)})
+        groups.append(
+            {"start": start, "count": count, "material": key // 2, "textured": bool(key % 2)}
+        )
         start += count
     positions, bent, uvs, faces = (np.concatenate(each) for each in zip(*parts, strict=True))
     return {

@@ -6,12 +6,16 @@ import functools
 import json
 import shutil
 import subprocess
+from base64 import b64encode
+from hashlib import sha256
 from pathlib import Path
 from typing import Any
 
 import pytest
+from nispcodec_web.bundle import bundled
 
-WEB = Path(__file__).parent.parent.parent / "web"
+HERE = Path(__file__).parent
+WEB = HERE.parent.parent / "web"
 OLDEST_NODE = 20
 
 
@@ -28,7 +32,7 @@ def node() -> str:
 
 
 def npm_package(name: str) -> Path:
-    """The folder of an npm package of web/package.json; skips the test where it is not installed."""
+    """The folder of an npm package of web/package.json; skips the test where it is missing."""
     folder = WEB / "node_modules" / name
     if not folder.is_dir():
         pytest.skip(f"{name}: not installed; `npm ci` in {WEB} does it")
@@ -52,8 +56,23 @@ def run_node(script: Path, *arguments: str | Path, timeout: float = 300) -> str:
 
 
 def answers(requests: list[dict[str, Any]], folder: Path) -> list[dict[str, Any]]:
-    """What answers.mjs says to requests; `folder` takes a file for them."""
+    """What the decoder says to requests in node; `folder` takes a file for them."""
     path = folder / "requests.json"
     path.write_text(json.dumps(requests))
-    found: list[dict[str, Any]] = json.loads(run_node(Path(__file__).parent / "answers.mjs", path))
+    found: list[dict[str, Any]] = json.loads(run_node(HERE / "answers.mjs", path))
+    return found
+
+
+def answers_in_browser(requests: list[dict[str, Any]], folder: Path) -> list[dict[str, Any]]:
+    """The same in headless Chromium, in a page whose policy allows its own script alone."""
+    npm_package("playwright-core")
+    script = bundled(HERE / "answers_in_page.js")
+    known = b64encode(sha256(script.encode()).digest()).decode()
+    policy = f"default-src 'none'; script-src 'sha256-{known}' 'wasm-unsafe-eval'"
+    head = f'<meta http-equiv="Content-Security-Policy" content="{policy}">'
+    page, path = folder / "page.html", folder / "requests.json"
+    page.write_text(f"<!doctype html>{head}<script>{script}</script>")
+    path.write_text(json.dumps(requests))
+    script_path = HERE / "answers_in_browser.mjs"
+    found: list[dict[str, Any]] = json.loads(run_node(script_path, chromium(), page, path))
     return found

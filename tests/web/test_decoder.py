@@ -1,9 +1,10 @@
-"""The JavaScript decoder in node: every conformance file, every malformed one."""
+"""The JavaScript decoder, in node and in Chromium: every conformance file, every malformed one."""
 
 from __future__ import annotations
 
 import base64
 import json
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -14,11 +15,12 @@ from nispcodec.core.document import Document
 from nispcodec.core.texture import decode_image
 from nispcodec.format import unpack
 from nispcodec.infer.evaluate import gradient
-from tests.web.programs import answers
+from tests.web.programs import answers, answers_in_browser
 
 CONFORMANCE = Path(__file__).parent.parent / "conformance"
 FILES = sorted(CONFORMANCE.glob("*.nisp"))
 MALFORMED = json.loads((CONFORMANCE / "malformed" / "expected.json").read_text())
+Ask = Callable[[list[dict[str, Any]], Path], list[dict[str, Any]]]
 TOLERANCE = json.loads((CONFORMANCE / "tolerance.json").read_text())
 
 
@@ -40,11 +42,13 @@ def request_of(path: Path, kernel: str) -> dict[str, Any]:
     return {"path": str(path), "points": points, "images": found, "kernel": kernel}
 
 
-@pytest.fixture(scope="module", params=["wasm", "plain"])
+@pytest.fixture(scope="module", params=["node wasm", "node plain", "chromium wasm"])
 def found(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Any:
     """Answers by name of the file, for either way of computing."""
-    requests = [request_of(path, request.param) for path in FILES]
-    listed = answers(requests, tmp_path_factory.mktemp("answers"))
+    program, kernel = request.param.split()
+    ask = answers if program == "node" else answers_in_browser
+    requests = [request_of(path, kernel) for path in FILES]
+    listed = ask(requests, tmp_path_factory.mktemp("answers"))
     return {path.stem: answer for path, answer in zip(FILES, listed, strict=True)}
 
 
@@ -68,13 +72,11 @@ def test_gradients_are_those_of_the_library(path: Path, found: Any) -> None:
     assert (np.abs(off) <= 2e-3 * (1 + np.linalg.norm(expected, axis=1)[:, None])).all()
 
 
-def test_malformed_files_are_refused(tmp_path: Path) -> None:
-    paths = [CONFORMANCE / "malformed" / f"{name}.nisp" for name in MALFORMED]
+@pytest.mark.parametrize("ask", [answers, answers_in_browser])
+def test_malformed_files_are_refused(ask: Ask, tmp_path: Path) -> None:
     request: dict[str, Any] = {"points": [], "images": [], "kernel": "plain"}
-    for name, answer in zip(
-        MALFORMED,
-        answers([{**request, "path": str(path)} for path in paths], tmp_path),
-        strict=True,
-    ):
+    paths = [CONFORMANCE / "malformed" / f"{name}.nisp" for name in MALFORMED]
+    found = ask([{**request, "path": str(path)} for path in paths], tmp_path)
+    for name, answer in zip(MALFORMED, found, strict=True):
         assert answer.get("error") == "NISPError", (name, answer)
         assert "expected" in answer["message"], name

@@ -13,6 +13,28 @@ export function decodeImage({ mime, data }) {
 }
 
 /**
+ * The texels of an image, for `NISPModel.color`. By WebGL, as a canvas in two dimensions would
+ * multiply by alpha and lose digits.
+ * @param {ImageBitmap} image
+ * @returns {import("./texture.js").Pixels}
+ */
+export function readPixels(image) {
+  const { width, height } = image;
+  const gl = new OffscreenCanvas(1, 1).getContext("webgl2");
+  if (!gl) throw new Error("WebGL 2: expected it, found a browser without");
+  gl.pixelStorei(gl.UNPACK_COLORSPACE_CONVERSION_WEBGL, gl.NONE);
+  gl.bindTexture(gl.TEXTURE_2D, gl.createTexture());
+  gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA8, gl.RGBA, gl.UNSIGNED_BYTE, image);
+  gl.bindFramebuffer(gl.FRAMEBUFFER, gl.createFramebuffer());
+  const texture = gl.getParameter(gl.TEXTURE_BINDING_2D);
+  gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0, gl.TEXTURE_2D, texture, 0);
+  const data = new Uint8Array(4 * width * height);
+  gl.readPixels(0, 0, width, height, gl.RGBA, gl.UNSIGNED_BYTE, data);
+  gl.getExtension("WEBGL_lose_context")?.loseContext();
+  return { width, height, data };
+}
+
+/**
  * The image file without what turns it: EXIF in PNG, JPEG and WebP; `irot` of AVIF set to 0.
  * A file of another structure is returned as it is: the image decoder says what is wrong with it.
  * @param {string} mime
