@@ -15,7 +15,8 @@ import { NUMBERS } from "./enumerations.js";
 export function readMatrix(reader, coding, rows, columns, symbols) {
   if (coding === "dense") return readValues(reader, rows * columns, symbols);
   if (coding === "csc") return transposed(readMatrix(reader, "csr", columns, rows, symbols), columns, rows);
-  const places = { coo: cooPlaces, csr: csrPlaces, dia: diaPlaces }[coding]?.(reader, rows, columns) ?? [];
+  const find = { coo: cooPlaces, csr: csrPlaces, dia: diaPlaces }[/** @type {"coo"|"csr"|"dia"} */ (coding)];
+  const places = find(reader, rows, columns);
   const values = readValues(reader, places.length, symbols);
   const matrix = new Float64Array(rows * columns);
   places.forEach((place, i) => (matrix[place] = values[i]));

@@ -28,7 +28,7 @@ import { readSpec } from "./topology.js";
  * @property {string} alphaMode
  * @property {number} alphaCutoff
  * @property {boolean} doubleSided
- * @property {Record<string, MapUse>} maps by slot
+ * @property {Object<string, MapUse>} maps by slot
  * @typedef {{name: string, mime: string, length: number|undefined}} TextureEntry
  * @typedef {object} Metadata
  * @property {number[]} frame center and radius

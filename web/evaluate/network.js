@@ -17,6 +17,9 @@ export class NetworkEvaluator {
     this.arithmetic = arithmetic;
     this.coordinates = coordinateCount(spec);
     this.inputs = inputCount(spec);
+    this.inputSlopes = 0;
+    /** @type {number|undefined} address of zeros in place of biases */
+    this.nothing = undefined;
     this.affine = spec.conditioning === "chart_affine";
     const values = (/** @type {string} */ name) => tensors.get(name)?.values ?? new Float32Array(0);
     this.embedding = values("embedding");
@@ -302,7 +305,7 @@ export class NetworkEvaluator {
 
   /** @param {Float32Array} all @param {number} row @param {number} p */
   coordinateSlope(all, row, p) {
-    const slopes = /** @type {number} */ (this.inputSlopes);
+    const slopes = this.inputSlopes;
     const { encoding, levels } = this.spec;
     if (encoding !== "fourier") return all[slopes + row * POINTS + p];
     let sum = 0;
