@@ -89,4 +89,5 @@ RESULTS = (
         (*TRAIN, *FORMAT),
     ),
     CommittedResult("rounding_loss.json", "benchmarks.studies.rounding_loss", ROUND_TRIP),
+    CommittedResult("web_decoder.json", "benchmarks.studies.web_decoder", ("web",)),
 )
