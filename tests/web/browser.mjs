@@ -21,7 +21,7 @@ try {
   });
   const started = performance.now();
   await page.goto(address);
-  await page.waitForFunction("globalThis.nispReady", null, { timeout: 60000 });
+  await page.waitForFunction("globalThis.nispReady", null, { timeout: 300000 });
   await page.evaluate("nispReady");
   const ready = performance.now() - started;
   const pictures = [];
