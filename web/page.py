@@ -72,18 +72,17 @@ def original_data(mesh: TexturedMesh, frame: Frame) -> dict[str, Any]:
 
     from nispcodec.io.write.vertices import split_vertices, vertex_normals
 
-    normals, parts, groups, start = vertex_normals(mesh), [], [], 0
+    normals, start = vertex_normals(mesh), 0
+    parts: list[tuple[Any, ...]] = []
+    groups: list[dict[str, Any]] = []
     keys = 2 * mesh.face_materials + mesh.has_uv
     for key in np.unique(keys).tolist():
         part = split_vertices(mesh, np.flatnonzero(keys == key))
         faces = part.faces.ravel() + sum(len(each[0]) for each in parts)
-        uvs = part.uvs if key % 2 else np.zeros((len(part.positions), 2))
-        parts.append((frame.to_normalized(part.positions), normals[part.sources], uvs, faces))
-        count = faces.size
-        groups.append(
-            {"start": start, "count": count, "material": key // 2, "textured": bool(key % 2)}
-        )
-        start += count
+        parts.append((frame.to_normalized(part.positions), normals[part.sources], part.uvs, faces))
+        group = {"start": start, "count": faces.size, "material": key // 2}
+        groups.append({**group, "textured": bool(key % 2)})
+        start += faces.size
     positions, bent, uvs, faces = (np.concatenate(each) for each in zip(*parts, strict=True))
     return {
         "materials": [_material(each) for each in mesh.materials],

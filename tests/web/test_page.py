@@ -99,7 +99,8 @@ def test_an_original_is_in_the_normalized_frame() -> None:
     indices = np.frombuffer(b64decode(data["indices"]), np.uint32)
     assert len(indices) == 3 * len(mesh.faces) == sum(each["count"] for each in data["groups"])
     corners = document.frame.to_normalized(mesh.positions)[mesh.faces]
-    ours, theirs = (np.sort(each.reshape(-1, 9), axis=0) for each in (positions[indices], corners))
+    ours = np.sort(positions[indices].reshape(-1, 9).astype(np.float64), axis=0)
+    theirs = np.sort(corners.reshape(-1, 9).astype(np.float64), axis=0)
     assert np.abs(ours - theirs).max() < 1e-6
 
 

@@ -71,13 +71,16 @@ class SampledField {
     /** @type {number[]} */
     const places = [];
     for (let i = 0; i < blocks.length; i += 3) {
-      for (let k = 0; k < 27; k++) {
-        const x = 2 * blocks[i] + Math.floor(k / 9);
-        const y = 2 * blocks[i + 1] + (Math.floor(k / 3) % 3);
-        const z = 2 * blocks[i + 2] + (k % 3);
-        if (!Number.isNaN(this.values.get(x, y, z))) continue;
-        this.values.set(x, y, z, 0);
-        places.push(x, y, z);
+      const [x, y, z] = [2 * blocks[i], 2 * blocks[i + 1], 2 * blocks[i + 2]];
+      for (let dx = 0; dx < 3; dx++) {
+        for (let dy = 0; dy < 3; dy++) {
+          for (let dz = 0; dz < 3; dz++) {
+            // NaN: not known yet.
+            if (this.values.get(x + dx, y + dy, z + dz) <= Infinity) continue;
+            this.values.set(x + dx, y + dy, z + dz, 0);
+            places.push(x + dx, y + dy, z + dz);
+          }
+        }
       }
     }
     const { cell } = this.layout;
@@ -93,32 +96,40 @@ class SampledField {
     /** @type {number[]} */
     const found = [];
     for (let i = 0; i < blocks.length; i += 3) {
-      const block = blocks.slice(i, i + 3);
-      for (let axis = 0; axis < 3; axis++) {
-        for (const side of [0, 2]) {
-          if (!this.crossed(block, axis, side)) continue;
-          block.forEach((place, k) => found.push(k === axis ? place + side - 1 : place));
-        }
-      }
+      const [x, y, z] = [blocks[i], blocks[i + 1], blocks[i + 2]];
+      const inside = this.insideBits(2 * x, 2 * y, 2 * z);
+      if (inside === 0 || inside === ALL_POINTS) continue;
+      FACES.forEach(({ bits, dx, dy, dz }) => {
+        const there = inside & bits;
+        if (there !== 0 && there !== bits) found.push(x + dx, y + dy, z + dz);
+      });
     }
     return found;
   }
 
-  /** @param {number[]} block @param {number} axis @param {number} side */
-  crossed(block, axis, side) {
-    const at = block.map((place) => 2 * place);
-    at[axis] += side;
-    const [b, c] = [(axis + 1) % 3, (axis + 2) % 3];
-    let inside = 0;
-    for (let k = 0; k < 9; k++) {
-      const place = at.slice();
-      place[b] += Math.floor(k / 3);
-      place[c] += k % 3;
-      if (this.values.get(place[0], place[1], place[2]) < 0) inside++;
+  /** Which of a block's 27 points are inside, as bits. @param {number} x @param {number} y @param {number} z */
+  insideBits(x, y, z) {
+    let bits = 0;
+    for (let k = 0, dx = 0; dx < 3; dx++) {
+      for (let dy = 0; dy < 3; dy++) {
+        for (let dz = 0; dz < 3; dz++, k++) if (this.values.get(x + dx, y + dy, z + dz) < 0) bits |= 1 << k;
+      }
     }
-    return inside > 0 && inside < 9;
+    return bits;
   }
 }
+
+const ALL_POINTS = 2 ** 27 - 1;
+
+/** Faces of a block: which of its points they have, and where the neighbor behind is. */
+const FACES = [0, 1, 2].flatMap((axis) =>
+  [0, 2].map((side) => {
+    let bits = 0;
+    for (let k = 0; k < 27; k++) if ([Math.floor(k / 9), Math.floor(k / 3) % 3, k % 3][axis] === side) bits |= 1 << k;
+    const [dx, dy, dz] = [0, 1, 2].map((each) => (each === axis ? side - 1 : 0));
+    return { bits, dx, dy, dz };
+  }),
+);
 
 /** Corners of a cell: bits 2, 1, 0 are x, y, z. Its edges, by their ends. */
 const EDGE_ENDS = [0, 1, 2, 3, 4, 5, 6, 7].flatMap((low) =>

@@ -12,11 +12,12 @@ export function ontoSurface(network, points, most, steps) {
   const moved = points.slice();
   const trial = new Float32Array(points.length);
   for (let step = 0; step < steps; step++) {
-    for (let i = 0; i < points.length; i++) {
-      const at = 3 * Math.floor(i / 3);
+    for (let at = 0; at < points.length; at += 3) {
       const steepness = gradients[at] ** 2 + gradients[at + 1] ** 2 + gradients[at + 2] ** 2;
-      const wanted = moved[i] - (values[at / 3] * gradients[i]) / Math.max(steepness, 1e-6);
-      trial[i] = Math.min(Math.max(wanted, points[i] - most), points[i] + most);
+      const share = values[at / 3] / Math.max(steepness, 1e-6);
+      for (let i = at; i < at + 3; i++) {
+        trial[i] = Math.min(Math.max(moved[i] - share * gradients[i], points[i] - most), points[i] + most);
+      }
     }
     const found = network.evaluate(trial);
     for (let i = 0; i < values.length; i++) {

@@ -53,9 +53,11 @@ function crossedEdges(faces, charts) {
   /** @type {[number, number][]} */
   const ends = [];
   for (let i = 0; i < faces.length; i++) {
-    const [a, b] = [faces[i], faces[i % 3 === 2 ? i - 2 : i + 1]];
+    const a = faces[i];
+    const b = faces[i % 3 === 2 ? i - 2 : i + 1];
+    if (charts[a] === charts[b]) continue;
     const key = edgeKey(a, b);
-    if (charts[a] === charts[b] || numbers.has(key)) continue;
+    if (numbers.has(key)) continue;
     numbers.set(key, ends.length);
     ends.push([Math.min(a, b), Math.max(a, b)]);
   }
@@ -114,10 +116,11 @@ class Cutter {
 
   /** @param {Int32Array} face @param {Int32Array} charts */
   add(face, charts) {
+    const chart = charts[face[0]];
+    if (charts[face[1]] === chart && charts[face[2]] === chart) return this.put(chart, face[0], face[1], face[2]);
     const own = Array.from(face, (vertex) => charts[vertex]);
     const crossings = [0, 1, 2].filter((i) => own[i] !== own[(i + 1) % 3]);
-    if (crossings.length === 0) this.put(own[0], face[0], face[1], face[2]);
-    else if (crossings.length === 3) this.inThree(face, own);
+    if (crossings.length === 3) this.inThree(face, own);
     else {
       // The corner that is alone is between the two sides that are crossed.
       const lone = crossings[0] === 0 && crossings[1] === 2 ? 0 : crossings[1];
@@ -126,9 +129,9 @@ class Cutter {
     }
   }
 
-  /** @param {number} chart @param {...number} corners */
-  put(chart, ...corners) {
-    this.faces.push(...corners);
+  /** @param {number} chart @param {number} a @param {number} b @param {number} c */
+  put(chart, a, b, c) {
+    this.faces.push(a, b, c);
     this.charts.push(chart);
   }
 
