@@ -205,3 +205,8 @@ def test_what_overflows_is_no_warning() -> None:
     tensors = {name: np.full(shape, 3e38, np.float32) for name, shape in spec.shapes.items()}
     values = evaluate(Network(spec, tensors), np.ones((2, 3), np.float32), None)
     assert np.isinf(values).all()
+
+
+def test_blocks_of_thousands_of_outputs_are_small() -> None:
+    assert block_size(NetworkSpec((4,), 65_535)) * 65_535 <= 2**22
+    assert block_size(NetworkSpec((30,), 300)) == block_size(NetworkSpec((30,), 1))
