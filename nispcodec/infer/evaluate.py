@@ -21,7 +21,7 @@ from nispcodec.infer.parallel import parallel_for
 # calls than they save, and threads wait for each other at every call.
 CACHE = 1 << 20
 SMALLEST = 64
-# Numbers that a block gives at most, 16 MB: a file may have 65,535 charts, and any number of points.
+# Numbers that a block gives at most, 16 MB: a file may have 65,535 charts.
 MOST_OUTPUTS = 1 << 22
 
 
