@@ -78,10 +78,12 @@ def plane_uv(charts: int) -> Network:
     first = np.hstack([np.vstack([inputs, np.zeros((1, 3))]), embedding])
     last = np.array([[0.25, -0.25, 0, 0, 1.0], [0, 0, 0.25, -0.25, 0.0]])
     spec = NetworkSpec(
-        (5,), 2, conditioning="embedding", charts=charts, embedding=1, activation="relu"
+        (5,), 2, conditioning="chart_affine", charts=charts, embedding=1, activation="relu"
     )
     tensors = {
         "embedding": 0.5 * np.arange(charts)[:, None],
+        "slopes": np.zeros((charts, 6)),
+        "offsets": np.zeros((charts, 2)),
         "weight.0": first,
         "bias.0": np.zeros(5),
         "weight.1": last,

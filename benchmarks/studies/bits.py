@@ -43,7 +43,7 @@ def entropy(symbols: Float64Array) -> float:
 def written(network: Network) -> int:
     """Bits in the file, with steps and curves."""
     content = weights.encode({"uv": network}, None)
-    return 8 * read_container(write_container([(NETS, True, content)]))[0].stored_length
+    return 8 * read_container(write_container([(NETS, True, content)], {}))[0].stored_length
 
 
 def measured(network: Network) -> Record:

@@ -52,6 +52,17 @@ class ChartTable:
 
 
 @dataclass(frozen=True)
+class StoredSection:
+    """An ancillary section as its payload stands in a file: it is unknown, and not looked into.
+
+    decoded_length  bytes of the content of a packed payload, None where the payload is the content
+    """
+
+    payload: bytes
+    decoded_length: int | None = None
+
+
+@dataclass(frozen=True)
 class Document:
     """The content of one file.
 
@@ -73,7 +84,7 @@ class Document:
     uv: Network | None = None
     half_thickness: float = 0.0
     info: Mapping[str, str | int | float | bool] = field(default_factory=dict)
-    extra: Mapping[str, bytes] = field(default_factory=dict)
+    extra: Mapping[str, StoredSection] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         self._check_tables()
@@ -82,25 +93,27 @@ class Document:
 
     def _check_tables(self) -> None:
         k = len(self.charts)
-        _demand("charts", 1 <= k <= MAX_CHARTS, f"1 to {MAX_CHARTS}", k)
-        _demand("frame", self.frame.radius > 0, "a positive radius", self.frame.radius)
-        _demand("materials", len(self.materials) > 0, "at least one", 0)
+        _demand("document.charts", 1 <= k <= MAX_CHARTS, f"1 to {MAX_CHARTS}", k)
+        _demand("document.frame", self.frame.radius > 0, "a positive radius", self.frame.radius)
+        _demand("document.materials", len(self.materials) > 0, "at least one", 0)
         materials = self.charts.materials
         _demand(
-            "chart materials",
+            "document.chart_materials",
             materials.min() >= 0 and materials.max() < len(self.materials),
             f"0 to {len(self.materials) - 1}",
             f"{materials.min()} to {materials.max()}",
         )
         if self.charts.openings:
-            _demand("openings", k > 1, "two charts or more", k)
-            _demand("openings", not self.charts.has_uv[-1], "a last chart without UV", "UV")
+            _demand("document.openings", k > 1, "two charts or more", k)
+            _demand(
+                "document.openings", not self.charts.has_uv[-1], "a last chart without UV", "UV"
+            )
 
     def _check_maps(self) -> None:
-        for material in self.materials:
+        for number, material in enumerate(self.materials):
             for slot, used in material.maps.items():
                 _demand(
-                    f"{material.name}.{slot}",
+                    f"materials.{number}.maps.{slot}.texture",
                     0 <= used.texture < len(self.textures),
                     f"a texture below {len(self.textures)}",
                     used.texture,
@@ -108,26 +121,26 @@ class Document:
 
     def _check_networks(self) -> None:
         k = len(self.charts)
-        _demand("sdf outputs", self.sdf.spec.outputs == 1, 1, self.sdf.spec.outputs)
+        _demand("networks.sdf", self.sdf.spec.outputs == 1, 1, self.sdf.spec.outputs)
         _demand(
-            "chart network",
+            "networks.chart",
             (self.chart is not None) == (k > 1),
             "one for two charts or more",
             f"{k} charts",
         )
         _demand(
-            "uv network",
+            "networks.uv",
             (self.uv is not None) == bool(self.charts.has_uv.any()),
             "one when a chart has UV",
             f"{int(self.charts.has_uv.sum())} charts with UV",
         )
         if self.chart is not None:
-            _demand("chart outputs", self.chart.spec.outputs == k, k, self.chart.spec.outputs)
+            _demand("networks.chart", self.chart.spec.outputs == k, k, self.chart.spec.outputs)
         if self.uv is not None:
-            _demand("uv outputs", self.uv.spec.outputs == 2, 2, self.uv.spec.outputs)
+            _demand("networks.uv", self.uv.spec.outputs == 2, 2, self.uv.spec.outputs)
             conditioned = self.uv.spec.conditioning != "none"
             _demand(
-                "uv charts",
+                "networks.uv",
                 self.uv.spec.charts == (k if conditioned else 0),
                 k,
                 self.uv.spec.charts,

@@ -97,14 +97,25 @@ def reencode(textures: Iterable[Texture], kind: str, quality: int) -> tuple[Text
     JPEG holds no transparency: images that have some stay as they are. Names get the suffix of
     their kind and stay different. Raises MeshError as `decode_image` does.
     """
-    again: list[Texture] = []
-    for texture in textures:
-        fresh, taken = _reencoded(texture, kind, quality), {other.name for other in again}
-        path, tries = PurePath(fresh.name), count(2)
-        while fresh.name in taken:
-            fresh = replace(fresh, name=f"{path.stem}-{next(tries)}{path.suffix}")
-        again.append(fresh)
-    return tuple(again)
+    again = [_reencoded(texture, kind, quality) for texture in textures]
+    names = distinct_names([texture.name for texture in again])
+    return tuple(replace(texture, name=name) for texture, name in zip(again, names, strict=True))
+
+
+def distinct_names(names: Sequence[str]) -> list[str]:
+    """The file names, a number added where one is taken: wood.png, wood-2.png.
+
+    Names that differ in case alone are taken for the same: they are on some disks.
+    """
+    found: list[str] = []
+    taken: set[str] = set()
+    for name in names:
+        path, tries, free = PurePath(name), count(2), name
+        while free.casefold() in taken:
+            free = f"{path.stem}-{next(tries)}{path.suffix}"
+        found.append(free)
+        taken.add(free.casefold())
+    return found
 
 
 def _reencoded(texture: Texture, kind: str, quality: int) -> Texture:
@@ -145,14 +156,15 @@ def sample_texture(
     wrap: tuple[str, str] = ("repeat", "repeat"),
     filter: str = "linear",
 ) -> Float32Array:
-    """Colors (n, c) float32 of an (h, w, c) image at (n, 2) finite UVs, origin bottom-left.
+    """Colors (n, c) float32 of an (h, w, c) image at (n, 2) UVs, origin bottom-left.
 
     Texel centers lie at half-integers, as in OpenGL and glTF; `wrap` and `filter` are those of
-    `TextureMap`. Never filters between mip levels.
+    `TextureMap`. A coordinate that is NaN or infinite counts as 0. Never filters between mip
+    levels.
     """
     height, width = image.shape[:2]
-    x = np.asarray(uv[:, 0], dtype=np.float64) * width
-    y = (1.0 - np.asarray(uv[:, 1], dtype=np.float64)) * height
+    u, v = np.nan_to_num(np.asarray(uv, dtype=np.float64), posinf=0.0, neginf=0.0).T
+    x, y = u * width, (1.0 - v) * height
     if filter == "nearest":
         return image[_texel(np.floor(y), height, wrap[1]), _texel(np.floor(x), width, wrap[0])]
     left, top = np.floor(x - 0.5), np.floor(y - 0.5)

@@ -21,6 +21,8 @@ from nispcodec.infer.parallel import parallel_for
 # calls than they save, and threads wait for each other at every call.
 CACHE = 1 << 20
 SMALLEST = 64
+# Numbers that a block gives at most, 16 MB: a file may have 65,535 charts.
+MOST_OUTPUTS = 1 << 22
 
 
 def evaluate(
@@ -103,16 +105,19 @@ class _Forward:
             for (weight, bias), scale in zip(network.layers, scales, strict=True)
         ]
         self.embedding: Float32Array | None = None
-        if self.spec.embedding:
-            self.embedding = np.ascontiguousarray(network.tensors["embedding"].T)
         self.frames: Float32Array | None = None
         if self.spec.conditioning == "chart_affine":
+            self.embedding = np.ascontiguousarray(network.tensors["embedding"].T)
             self.frames = _frames(network)
         self.mirrored = np.array(self.spec.mirrored)[:, None]
         self._own = local()
 
     def __call__(self, points: Float32Array, charts: Int32Array | None) -> Float32Array:
-        """Outputs (outputs, n) at points (n, 3)."""
+        """Outputs (outputs, n) at points (n, 3); NaN and infinities where they overflow."""
+        with np.errstate(over="ignore", invalid="ignore"):
+            return self._outputs(points, charts)
+
+    def _outputs(self, points: Float32Array, charts: Int32Array | None) -> Float32Array:
         activations = self._input(points, charts)
         buffers = self._buffers(2, len(points))
         for index, layer in enumerate(self.layers[:-1]):
@@ -274,8 +279,8 @@ def _in_blocks(run: Callable[[slice], None], spec: NetworkSpec, count: int) -> N
 
 
 def block_size(spec: NetworkSpec) -> int:
-    """How many points are evaluated at a time."""
-    return max(CACHE // (8 * max(spec.hidden)), SMALLEST)
+    """How many points are evaluated at a time: fewer where a network has thousands of outputs."""
+    return min(max(CACHE // (8 * max(spec.hidden)), SMALLEST), max(MOST_OUTPUTS // spec.outputs, 1))
 
 
 def _checked_charts(spec: NetworkSpec, count: int, charts: IntArray | None) -> Int32Array | None:

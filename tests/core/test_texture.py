@@ -11,6 +11,7 @@ from nispcodec.core.errors import MeshError
 from nispcodec.core.texture import (
     base_color,
     decode_image,
+    distinct_names,
     image_size,
     linear_to_srgb,
     reencode,
@@ -44,6 +45,12 @@ def test_the_size_is_that_of_the_pixels(kind: str) -> None:
 def test_the_size_of_what_is_no_image() -> None:
     with pytest.raises(MeshError, match=r"broken\.png"):
         image_size(Texture("broken.png", b"no image", "image/png"))
+
+
+def test_names_that_are_taken_get_a_number() -> None:
+    names = ["a.png", "b.png", "A.PNG", "a.png", "a-2.png", "c"]
+    distinct = ["a.png", "b.png", "A-2.PNG", "a-3.png", "a-2-2.png", "c"]
+    assert distinct_names(names) == distinct
 
 
 def test_origin_is_bottom_left() -> None:
@@ -84,6 +91,13 @@ def test_nearest_takes_the_texel_under_the_point() -> None:
     assert sampled(0.49, 0.49, filter="nearest") == 0
     assert sampled(0.51, 0.49, filter="nearest") == 1
     assert sampled(-0.01, 0.51, filter="nearest") == 11
+
+
+@pytest.mark.parametrize("odd", [np.nan, np.inf, -np.inf])
+@pytest.mark.parametrize("filter", ["linear", "nearest"])
+def test_a_coordinate_that_is_not_finite_counts_as_0(odd: float, filter: str) -> None:
+    assert sampled(odd, 0.3, filter=filter) == sampled(0.0, 0.3, filter=filter)
+    assert sampled(0.3, odd, filter=filter) == sampled(0.3, 0.0, filter=filter)
 
 
 def test_uv_far_outside_is_finite() -> None:

@@ -16,7 +16,7 @@ from nispcodec.core.asset import (
     Texture,
     TextureMap,
 )
-from nispcodec.core.document import ChartTable, Document, Frame
+from nispcodec.core.document import ChartTable, Document, Frame, StoredSection
 from nispcodec.core.network import ACTIVATIONS, CONDITIONINGS, OUTPUTS, Network, NetworkSpec
 from nispcodec.core.slots import SLOTS
 
@@ -76,10 +76,10 @@ def full() -> Document:
         ),
         sdf=quantized(network(NetworkSpec((4, 3), 1, activation="relu", output="tanh"))),
         chart=network(NetworkSpec((5,), 3, encoding="fourier", levels=2), 1),
-        uv=network(NetworkSpec((4,), 2, conditioning="embedding", charts=3, embedding=2), 2),
+        uv=network(NetworkSpec((4,), 2, conditioning="chart_affine", charts=3, embedding=2), 2),
         half_thickness=0.01,
         info={"tool": "test", "seed": 7, "seconds": 0.1, "ok": True, "preset": "best"},
-        extra={"ZZZZ": b"from the future"},
+        extra={"ZZZZ": StoredSection(b"from the future")},
     )
 
 
@@ -87,6 +87,11 @@ _NUMBERS = st.floats(-1e6, 1e6, width=32)
 _NAMES = st.text(st.characters(exclude_categories=["Cc", "Cs"]), max_size=12)
 _FILES = st.from_regex(r"[a-z][a-z0-9 ]{0,8}\.(png|jpg)", fullmatch=True)
 _UNIT = st.floats(0, 1)
+_IMAGES = st.binary(min_size=1, max_size=40)
+_STORED = st.one_of(
+    st.builds(StoredSection, st.binary(max_size=40)),
+    st.builds(StoredSection, st.binary(max_size=40), st.integers(41, 2**20)),
+)
 
 
 def maps(textures: int) -> st.SearchStrategy[dict[str, TextureMap]]:
@@ -132,7 +137,7 @@ def networks(draw: st.DrawFn, outputs: int, charts: int = 0) -> Network:
         levels=draw(st.integers(1, 3)) if fourier else 0,
         conditioning=conditioning,
         charts=charts if conditioning != "none" else 0,
-        embedding=draw(st.integers(1, 3)) if conditioning in ("embedding", "chart_affine") else 0,
+        embedding=draw(st.integers(1, 3)) if conditioning == "chart_affine" else 0,
         activation=draw(st.sampled_from(ACTIVATIONS)),
         w0=draw(st.floats(0.5, 60)),
         output=draw(st.sampled_from(OUTPUTS)),
@@ -168,7 +173,9 @@ def documents(draw: st.DrawFn) -> Document:
         charts=table,
         materials=tuple(draw(materials(len(names))) for _ in range(kinds)),
         textures=tuple(
-            Texture(name, draw(st.binary(max_size=40)), draw(st.sampled_from(MIME_TYPES)))
+            Texture(
+                name, draw(st.binary(min_size=1, max_size=40)), draw(st.sampled_from(MIME_TYPES))
+            )
             for name in names
         ),
         sdf=draw(networks(1)),
@@ -176,7 +183,7 @@ def documents(draw: st.DrawFn) -> Document:
         uv=draw(networks(2, count)) if table.has_uv.any() else None,
         half_thickness=draw(_UNIT),
         info=draw(st.dictionaries(_NAMES, scalars, max_size=4)),
-        extra=draw(st.dictionaries(unknown, st.binary(max_size=40), max_size=2)),
+        extra=draw(st.dictionaries(unknown, _STORED, max_size=2)),
     )
 
 

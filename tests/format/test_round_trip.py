@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given, settings
 
 from nispcodec.core.asset import Material, Texture, TextureMap
-from nispcodec.core.document import ChartTable, Document, Frame
+from nispcodec.core.document import ChartTable, Document, Frame, StoredSection
 from nispcodec.core.errors import FormatError
 from nispcodec.core.network import NetworkSpec
 from nispcodec.format import inspect, metadata, pack, unpack
@@ -63,7 +63,7 @@ def test_inspect_accounts_for_every_byte() -> None:
 def test_overhead_of_a_one_material_asset() -> None:
     """As an encoder writes it, with what it measured: two maps under names of usual lengths."""
     charts = ChartTable(np.zeros(13, np.int32), np.ones(13, np.bool_), (-0.25, 0.125), (1.25, 0.75))
-    spec = NetworkSpec((32,) * 4, 2, conditioning="embedding", charts=13, embedding=4)
+    spec = NetworkSpec((32,) * 4, 2, conditioning="chart_affine", charts=13, embedding=4)
     document = dataclasses.replace(
         full(),
         frame=Frame((0.0, 0.25, 0.5), 1.5),
@@ -108,12 +108,12 @@ def test_weights_that_are_no_multiples_of_their_step() -> None:
         ({"info": {"a": [1]}}, "document.info.a"),
         ({"info": {"a": 2**64}}, "value"),
         ({"info": {"a": "\ud800"}}, "value"),
-        ({"info": {"a": "x" * 2000}}, "text length"),
+        ({"info": {"a": "x" * 2000}}, "text_length"),
         ({"extra": {"META": b""}}, "extra"),
-        ({"extra": {"abcd": b""}}, "section code"),
-        ({"extra": {"\ud800": b""}}, "section code"),
-        ({"extra": {"LONGER": b""}}, "section code"),
-        ({"extra": {f"X{i:03}": b"" for i in range(64)}}, "section count"),
+        ({"extra": {"abcd": StoredSection(b"")}}, "section_code"),
+        ({"extra": {"\ud800": StoredSection(b"")}}, "section_code"),
+        ({"extra": {"LONGER": StoredSection(b"")}}, "section_code"),
+        ({"extra": {f"X{i:03}": StoredSection(b"") for i in range(64)}}, "section_count"),
     ],
 )
 def test_documents_that_cannot_be_written(change: dict[str, Any], field: str) -> None:

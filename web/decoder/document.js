@@ -45,7 +45,7 @@ export function parseNISP(file) {
  */
 function readImages(data, entries) {
   const others = entries.reduce((sum, entry) => sum + (entry.length ?? 0), 0);
-  demand(others <= data.length, "TXTR", "length", `at least ${others} bytes`, data.length);
+  demand(others < data.length, "TXTR", "length", `more than ${others} bytes`, data.length);
   let at = 0;
   return entries.map(({ name, mime, length }) => {
     const end = length === undefined ? data.length : at + length;

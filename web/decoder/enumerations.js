@@ -1,7 +1,7 @@
 /** Enumerations of format_spec.md: the numbers count from 1. */
 export const NETWORKS = ["sdf", "chart", "uv"];
 export const ENCODINGS = ["identity", "fourier"];
-export const CONDITIONINGS = ["none", "scalar", "embedding", "chart_affine"];
+export const CONDITIONINGS = ["none", "scalar", "chart_affine"];
 export const ACTIVATIONS = ["sine", "relu"];
 export const OUTPUTS = ["identity", "tanh", "sigmoid"];
 export const ALPHA_MODES = ["opaque", "mask", "blend"];
@@ -41,4 +41,3 @@ export const MAX_INIT_SEED = 4294967295;
 export const MAX_WEIGHTS = 1048576;
 export const MAX_SYMBOL = 8388607;
 export const MAX_CELLS = 256;
-export const MAX_JOINED = 3;

@@ -179,7 +179,7 @@ function readTextures(list) {
     const mime = record.choice(2, "mime", MIME_TYPES, "image/png");
     const name = readName(record, ENDINGS[MIME_TYPES.indexOf(mime)]);
     const last = i === list.length - 1;
-    const length = last ? undefined : record.integer(3, "length", 0, 2 ** 31);
+    const length = last ? undefined : record.integer(3, "length", 1, 2 ** 31);
     record.finish();
     return { name, mime, length };
   });
@@ -205,22 +205,30 @@ function readInfo(record) {
     const name = typeof key === "number" ? MEASURES[key - 1] : key;
     const known = typeof key === "number" ? name !== undefined : !MEASURES.includes(key);
     record.demand(known, `key ${key}`, "a known number or another name", key);
+    record.printable("key", name);
     info[name] = readMeasure(record, key, name, value);
   }
   return info;
 }
 
-/** @param {Record} record @param {number|string} key @param {string} name @param {unknown} value */
+/**
+ * Text keys have text, integers, floats or bools; presets integers or text, seeds integers, and other
+ * numbered measures integers, which count millionths, or floats.
+ * @param {Record} record @param {number|string} key @param {string} name @param {unknown} value
+ */
 function readMeasure(record, key, name, value) {
-  if (key === 1) {
-    const preset = typeof value === "number" ? PRESETS[value - 1] : value;
-    const known = typeof preset === "string" && (typeof value === "number" || !PRESETS.includes(preset));
-    record.demand(known, name, "a known number or another name", value);
-    return /** @type {string} */ (preset);
-  }
-  if (value instanceof Float) return value.value;
-  const plain = typeof value === "number" || typeof value === "string" || typeof value === "boolean";
-  record.demand(plain, name, "text, a number or a bool", typeof value);
-  const counted = typeof key === "number" && key > 2 && typeof value === "number";
-  return counted ? value / 1e6 : /** @type {string|number|boolean} */ (value);
+  if (key === 1) return readPreset(record, name, value);
+  if (typeof key === "string" && typeof value === "string") return record.printable(name, value);
+  if (typeof key === "string" && typeof value === "boolean") return value;
+  if (key !== 2 && value instanceof Float) return value.value;
+  record.demand(typeof value === "number", name, "a value of its type", typeof value);
+  return /** @type {number} */ (value) / (typeof key === "number" && key > 2 ? 1e6 : 1);
+}
+
+/** @param {Record} record @param {string} name @param {unknown} value */
+function readPreset(record, name, value) {
+  const preset = typeof value === "number" ? PRESETS[value - 1] : value;
+  const known = typeof preset === "string" && (typeof value === "number" || !PRESETS.includes(preset));
+  record.demand(known, name, "a known number or another name", value);
+  return record.printable(name, /** @type {string} */ (preset));
 }

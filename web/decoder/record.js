@@ -92,9 +92,14 @@ export class Record {
   text(key, field, fallback) {
     return this.typed(key, field, fallback, (value) => {
       this.demand(typeof value === "string", field, "text", typeof value);
-      this.demand(!/[\0-\x1f\x7f]/.test(value), field, "no control characters", "some");
-      return /** @type {string} */ (value);
+      return this.printable(field, value);
     });
+  }
+
+  /** Text without control characters. @param {string} field @param {string} text */
+  printable(field, text) {
+    this.demand(!/[\0-\x1f\x7f]/.test(text), field, "no control characters", "some");
+    return text;
   }
 
   /**

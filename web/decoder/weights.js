@@ -1,5 +1,5 @@
 import { ByteReader, halfToNumber } from "./bytes.js";
-import { CODINGS, MAX_JOINED, MAX_SYMBOL, MAX_WEIGHTS, STEPS } from "./enumerations.js";
+import { CODINGS, MAX_SYMBOL, MAX_WEIGHTS, STEPS } from "./enumerations.js";
 import { NISPError } from "./errors.js";
 import { initialWeights } from "./initial_weights.js";
 import { readMatrix } from "./matrices.js";
@@ -93,15 +93,22 @@ function readRecord(reader, left, before, seed, place) {
 
 /** @param {ByteReader} reader @param {number} left */
 function readTag(reader, left) {
-  const tag = reader.uint8();
-  const coding = CODINGS[(tag & 7) - 1];
-  const form = (tag >> 3) & 7;
-  const joined = tag >> 6;
-  if (!coding) throw reader.error("coding", `1 to ${CODINGS.length}`, tag & 7);
-  const joinable = coding === "entropy" || coding === "delta_init";
-  const fits = joined <= MAX_JOINED && joined < left && (joinable || joined === 0);
+  const [coding, form, joined] = readTagNumbers(reader);
+  if (!CODINGS[coding - 1]) throw reader.error("coding", `1 to ${CODINGS.length}`, coding);
+  if (form > STEPS.length) throw reader.error("step", `0 to ${STEPS.length}`, form);
+  const joinable = ["entropy", "delta_init"].includes(CODINGS[coding - 1]);
+  const fits = joined < left && (joinable || joined === 0);
   if (!fits) throw reader.error("joined", "tensors that follow, in a coding that joins", joined);
-  return { coding, form: form ? STEPS[form - 1] : null, joined };
+  return { coding: CODINGS[coding - 1], form: form ? STEPS[form - 1] : null, joined };
+}
+
+/** Coding, form of the step, how many more tensors: in one byte, or where that cannot hold them in four. @param {ByteReader} reader */
+function readTagNumbers(reader) {
+  const tag = reader.uint8();
+  if (tag !== 0) return [tag & 7, (tag >> 3) & 7, tag >> 6];
+  const wide = [...reader.bytes(3)];
+  if (wide[0] <= 7 && wide[1] <= 7 && wide[2] <= 3) throw reader.error("tag", "the fewest bytes", "more");
+  return wide;
 }
 
 /** @param {ByteReader} reader @param {string} form @param {number|null} before */

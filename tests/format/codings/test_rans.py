@@ -52,10 +52,19 @@ def test_broken_streams_are_refused(count: int) -> None:
     data = coins([1] * count)
     with pytest.raises(FormatError, match="words: expected as many as the tokens need"):
         rans.decode(Reader("NETS", data[:-2]), [(count, EVEN)])
-    with pytest.raises(FormatError, match="final state: expected 65536"):
+    with pytest.raises(FormatError, match="final_state: expected 65536"):
         rans.decode(Reader("NETS", data[:-2] + b"\x55\x55"), [(count, EVEN)])
 
 
 def test_states_take_turns_only_in_long_streams() -> None:
     assert {rans.lanes(count) for count in (1, rans.LONG - 1)} == {1}
     assert rans.lanes(rans.LONG) == rans.LONG >> rans.TURNS_BITS > 1
+
+
+@pytest.mark.parametrize("count", [1, rans.LONG])
+def test_a_stream_begins_with_states_that_an_encoder_ends_with(count: int) -> None:
+    table = np.array([0, 8000, rans.SCALE])
+    data = bytearray(rans.encode([0] * count, [8000] * count))
+    data[0:2] = bytes(2)
+    with pytest.raises(FormatError, match="first_state: expected at least 65536"):
+        rans.decode(Reader("NETS", bytes(data)), [(count, table)])
