@@ -18,6 +18,8 @@ const int NISP_SDF = 0, NISP_CHART = 4, NISP_UV = 8;
 const float NISP_BALL = 1.01, NISP_CUBE = 1.02;
 // A ray that grazes the surface goes on by so much at least; it has met it when as near as that.
 const float NISP_LEAST_STEP = 5e-4, NISP_NEAR = 1e-4;
+// A crossing is not looked for more exactly: a Newton step follows.
+const float NISP_EXACT = 2e-5;
 // How far from a point slopes are taken.
 const float NISP_OFFSET = 1e-3;
 const int NISP_STEPS = 400, NISP_LAYERS_SEEN = 8;
@@ -177,6 +179,7 @@ float nispBetween(vec3 origin, vec3 direction, float side, float low, float befo
   for (int i = 0; i < 4; i++) {
     float middle = mix(low, high, clamp(before / (before - beyond), 0.05, 0.95));
     float there = side * nispSdf(origin + middle * direction);
+    if (abs(there) < NISP_EXACT) return middle;
     if (there > 0.0) {
       low = middle;
       before = there;

@@ -1,7 +1,10 @@
 import { offsetsOf, Renderer } from "./renderer.js";
 
-/** Samples along a pixel's side when nothing moves; pixels of a field while something does. */
-const PANE = Object.freeze({ samples: 3, movingScale: 0.35, restAfter: 200, mostPixels: 2 ** 21 });
+/**
+ * samples along a pixel's side when nothing moves; milliseconds after which that is so; pixels at most;
+ * milliseconds that a part of a field's picture may take; least share of its width while it moves.
+ */
+const PANE = Object.freeze({ samples: 3, restAfter: 200, mostPixels: 2 ** 21, slice: 60, leastScale: 0.1 });
 
 /** A canvas with its renderer, redrawn when asked to, and refined while at rest. */
 export class Pane {
@@ -15,6 +18,9 @@ export class Pane {
     this.changedAt = -Infinity;
     this.pending = 0;
     this.moving = false;
+    // Both follow from how long the last ones took.
+    this.scale = 0.3;
+    this.rows = 32;
     new ResizeObserver(() => this.changed()).observe(canvas);
   }
 
@@ -25,7 +31,7 @@ export class Pane {
   }
 
   changed() {
-    this.renderer.samples = 0;
+    this.renderer.restart();
     this.changedAt = performance.now();
     this.schedule();
   }
@@ -40,15 +46,25 @@ export class Pane {
   frame() {
     if (!this.canvas.clientWidth || !this.renderer.materials) return;
     const moving = performance.now() - this.changedAt < PANE.restAfter;
-    if (moving !== this.moving) this.renderer.samples = 0;
+    if (moving !== this.moving) this.renderer.restart();
     this.moving = moving;
-    const { width, height } = this.size(moving && this.look.field ? PANE.movingScale : 1);
     const offsets = offsetsOf(moving ? 1 : PANE.samples);
-    if (this.renderer.samples < offsets.length) {
-      this.renderer.addSample(this.camera, this.look, width, height, offsets[this.renderer.samples]);
-      this.renderer.present();
-    }
+    if (this.renderer.samples < offsets.length) this.addTo(offsets[this.renderer.samples]);
     if (moving || this.renderer.samples < offsets.length) this.schedule();
+  }
+
+  /** Draws one more sample, or a part of it, in about as long as a slice. @param {number[]} offset */
+  addTo(offset) {
+    const { renderer, camera, look, moving } = this;
+    const { width, height } = this.size(moving && look.field ? this.scale : 1);
+    const started = performance.now();
+    const rows = moving ? height : this.rows;
+    if (renderer.addSample(camera, look, width, height, offset, rows)) renderer.present();
+    else renderer.finish();
+    if (!look.field) return;
+    const share = Math.min(Math.max(PANE.slice / Math.max(performance.now() - started, 1), 0.25), 2);
+    if (moving) this.scale = Math.min(Math.max(this.scale * Math.sqrt(share), PANE.leastScale), 1);
+    else this.rows = Math.max(1, Math.round(this.rows * share));
   }
 
   /** The canvas's size, and that of what is drawn for it. @param {number} scale */

@@ -26,6 +26,7 @@ export class Renderer {
     this.one = new Target(gl, 1, gl.RGBA16F, true);
     this.sum = new Target(gl, 1, gl.RGBA16F, false);
     this.samples = 0;
+    this.traced = 0;
     /** @type {FieldDrawing|null} */ this.field = null;
     /** @type {MeshDrawing|null} */ this.mesh = null;
     /** @type {MaterialSet|null} */ this.materials = null;
@@ -47,15 +48,27 @@ export class Renderer {
     this.mesh = new MeshDrawing(this.gl, mesh);
   }
 
+  /** Begins a new picture. */
+  restart() {
+    this.samples = this.traced = 0;
+  }
+
   /**
-   * Adds one sample of the picture to those so far.
+   * Adds one sample of the picture to those so far. Rays of a field are traced so many rows at a time,
+   * as a graphics processor that is kept busy for long is taken away: to be called again until it is true.
    * @param {Camera} camera @param {Look} look @param {number} width @param {number} height
    * @param {number[]} offset of the sample in its pixel, from -0.5 to 0.5
+   * @param {number} [rows]
+   * @returns {boolean} whether the sample is there
    */
-  addSample(camera, look, width, height, offset) {
+  addSample(camera, look, width, height, offset, rows = height) {
     const { gl } = this;
     const jitter = [(2 * offset[0]) / width, (2 * offset[1]) / height];
-    if (look.field && this.field) this.traceField(camera, width, height, jitter);
+    if (look.field && this.field) {
+      this.traceField(camera, width, height, jitter, rows);
+      if (this.traced < height) return false;
+      this.traced = 0;
+    }
     this.one.bind(width, height);
     gl.clearColor(0, 0, 0, 0);
     gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
@@ -64,17 +77,27 @@ export class Renderer {
     if (look.field && this.field) this.shadeField(camera, look, width, height, jitter);
     else if (this.mesh) this.drawMesh(camera, look, width, height, jitter);
     this.accumulate(width, height);
+    return true;
   }
 
-  /** @param {Camera} camera @param {number} width @param {number} height @param {number[]} jitter */
-  traceField(camera, width, height, jitter) {
+  /** @param {Camera} camera @param {number} width @param {number} height @param {number[]} jitter @param {number} rows */
+  traceField(camera, width, height, jitter, rows) {
     const { gl } = this;
     const field = /** @type {FieldDrawing} */ (this.field);
     this.found.bind(width, height);
     gl.disable(gl.BLEND);
     const program = this.programs.trace(field.groups);
     this.rays(program, camera, width, height, jitter);
+    gl.enable(gl.SCISSOR_TEST);
+    gl.scissor(0, this.traced, width, rows);
     field.trace(program);
+    gl.disable(gl.SCISSOR_TEST);
+    this.traced += rows;
+  }
+
+  /** Waits until all is drawn. */
+  finish() {
+    this.gl.readPixels(0, 0, 1, 1, this.gl.RGBA, this.gl.FLOAT, new Float32Array(4));
   }
 
   /** @param {import("./programs.js").Program} program @param {Camera} camera @param {number} width @param {number} height @param {number[]} jitter */
@@ -176,14 +199,14 @@ export class Renderer {
    */
   render(camera, look, size, across) {
     const { gl } = this;
-    this.samples = 0;
+    this.restart();
     for (const offset of offsetsOf(across)) this.addSample(camera, look, size, size, offset);
     const target = new Target(gl, 1, gl.RGBA8, false);
     target.bind(size, size);
     this.resolve(false);
     const pixels = new Uint8Array(4 * size * size);
     gl.readPixels(0, 0, size, size, gl.RGBA, gl.UNSIGNED_BYTE, pixels);
-    this.samples = 0;
+    this.restart();
     const row = 4 * size;
     return Uint8Array.from(pixels, (_, i) => pixels[(size - 1 - Math.floor(i / row)) * row + (i % row)]);
   }
