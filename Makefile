@@ -2,6 +2,7 @@
 # make test: set up, then everything that CI runs
 # make docs: the page of the public names, into build/api
 # make package: sdist and wheel into build/dist, tried in clean environments of every Python that is there
+# make web: what the tests of web/ want besides node and Chromium, by npm
 # make fuzz: RUNS files of a coverage-guided fuzzer against the parser
 # make sanitize: the tests of the native kernels with the sanitizers of memory and undefined behavior, threads with that of threads
 # make bench: every codec on the assets in ASSETS, into build/bench/report.html; one to three hours, goes on where it stopped
@@ -13,7 +14,7 @@ TORCH ?= torch==2.13.0
 BIN := .venv/bin
 KERNEL := $(wildcard nispcodec/train/backend/native/kernel/* nispcodec/infer/native/kernel/*)
 
-.PHONY: setup demo test lint docs package fuzz sanitize bench
+.PHONY: setup demo test lint docs package web fuzz sanitize bench
 
 setup: .venv/ready
 
@@ -52,6 +53,9 @@ docs: setup
 
 package: setup
 	$(BIN)/python .ci/package.py
+
+web:
+	cd web && npm ci --no-audit --no-fund
 
 test: lint docs package
 	$(BIN)/python -m benchmarks.status

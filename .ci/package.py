@@ -84,10 +84,11 @@ def try_package(python: str, version: int, package: Path) -> None:
 
 
 def use(nisp: Path, folder: Path) -> None:
-    """Decode and verify a file; encoding wants an extra, and says so. Raises Failed."""
+    """Decode, verify and show a file; encoding wants an extra, and says so. Raises Failed."""
     mesh = folder / "out.glb"
     run(str(nisp), "verify", str(MODEL))
     run(str(nisp), "decode", str(MODEL), "-o", str(mesh), "--resolution", "32")
+    run(str(nisp), "view", str(MODEL), "-o", str(folder / "page.html"), "--original", str(mesh))
     asked = subprocess.run(
         [str(nisp), "encode", str(mesh), "-o", str(folder / "out.nisp")],
         capture_output=True,

@@ -21,6 +21,7 @@ COMMANDS = (
     "decode",
     "render",
     "sheet",
+    "view",
     "info",
     "verify",
     "recode",
@@ -112,5 +113,6 @@ def main() -> None:
     nisp encode demo/sample.obj -o s.nisp    fit, quantize, write
     nisp decode s.nisp -o s.glb              textured mesh again
     nisp render s.nisp -o s.png              a picture of it
+    nisp view s.nisp                         in the browser
     nisp compare demo/sample.obj s.nisp      what was lost
     """

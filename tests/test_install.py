@@ -153,7 +153,7 @@ def test_every_package_is_in_the_distribution() -> None:
     folders = {path.parent for path in (ROOT / "nispcodec").rglob("__init__.py")}
     found = {".".join(folder.relative_to(ROOT).parts) for folder in folders}
     listed = PYPROJECT["tool"]["setuptools"]["packages"]
-    assert listed == sorted(found | {"nispcodec_cli"})
+    assert listed == sorted(found | {"nispcodec_cli", "nispcodec_web"})
 
 
 def test_the_version_is_said_once() -> None:

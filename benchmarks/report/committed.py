@@ -110,4 +110,5 @@ RESULTS = (
         (*CORE, "nispcodec/geometry", "nispcodec/dataset"),
     ),
     CommittedResult("random_assets.json", "benchmarks.studies.random_assets", ENCODE),
+    CommittedResult("web_decoder.json", "benchmarks.studies.web_decoder", ("web",)),
 )

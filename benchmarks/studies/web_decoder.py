@@ -1,0 +1,92 @@
+"""The decoder in JavaScript: its bytes, and what it takes to parse, ask and extract, in node.
+
+    python -m benchmarks.studies.web_decoder --models DIR --assets ../shared/assets [--only spot]
+
+DIR holds NAME.nisp for the assets NAME. Wants node, and terser by `npm ci` in web/. Times are
+processor time of one thread, the least of several runs. Results are kept asset by asset.
+"""
+
+from __future__ import annotations
+
+import gzip
+import json
+import subprocess
+from collections.abc import Iterator
+from functools import partial
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+import click
+from nispcodec_web.bundle import bundled
+from nispcodec_web.page import viewer_page
+
+from benchmarks.measuring.build import HERE
+from benchmarks.measuring.model_records import measured, models_options
+from benchmarks.measuring.result_file import Record
+from benchmarks.measuring.target import Asked, Target, asked_of_each
+from nispcodec.format.constants import TXTR
+from nispcodec.format.document import inspect
+
+RESULTS = Path("benchmarks/results/web_decoder.json")
+WEB = HERE / "web"
+DECODER = (
+    'import {{ parseNISP }} from "{web}/decoder/document.js";\n'
+    'import {{ NISPModel }} from "{web}/evaluate/model.js";\n'
+    "globalThis.nisp = {{ parseNISP, NISPModel }};\n"
+)
+TARGETS = [
+    Target("parse, s", ("parse_seconds", "least"), 0.02),
+    Target("SDF queries / plain loops", ("wasm_over_loops",), 15, at_least=True),
+    Target("SDF queries a second", ("sdf_points_per_second", "wasm"), 1e6, at_least=True),
+    Target("mesh of 128 cells, first, s", ("meshes", "128", "first_seconds"), 1),
+    Target("mesh of 256 cells, first, s", ("meshes", "256", "first_seconds"), 3),
+    Target("page without images, bytes", ("page_without_images_bytes",), 120_000),
+]
+
+
+def asked(result: Record) -> Iterator[Asked]:
+    """The targets of each asset, and that of the decoder's size."""
+    yield from asked_of_each(result["assets"], lambda _: TARGETS)
+    size = Target("decoder and evaluator, gzip, bytes", ("decoder_gzip_bytes",), 20_000)
+    yield from asked_of_each({"decoder": result["sizes"]}, lambda _: [size])
+
+
+@click.command(help=__doc__)
+@models_options(RESULTS)
+def main(models: Path, assets: Path, only: tuple[str, ...], output: Path) -> None:
+    """Measure what is not measured yet."""
+    sizes = decoder_sizes()
+    records = measured(models, assets, only, output, partial(record, sizes=sizes), sizes=sizes)
+    for name, found in records.items():
+        click.echo(f"{name}: {found['sdf_points_per_second']}, {found['wasm_over_loops']:.1f} x")
+
+
+def decoder_sizes() -> Record:
+    """Bytes of parser and evaluator, minified and then compressed, and of the kernel in it."""
+    with TemporaryDirectory() as name:
+        entry = Path(name, "entry.js")
+        entry.write_text(DECODER.format(web=WEB))
+        script = bundled(entry)
+    terser = [str(WEB / "node_modules" / ".bin" / "terser"), "-c", "passes=2", "-m", "--toplevel"]
+    small = subprocess.run(terser, input=script.encode(), capture_output=True, check=True).stdout
+    return {
+        "decoder_bytes": len(script),
+        "decoder_minified_bytes": len(small),
+        "decoder_gzip_bytes": len(gzip.compress(small, 9, mtime=0)),
+        "page_bytes": len(viewer_page(b"", "")),
+    }
+
+
+def record(model: Path, original: Path, sizes: Record) -> Record:
+    """What node says of one file, and how large its page would be without images."""
+    script = HERE / "benchmarks" / "studies" / "web_decoder.mjs"
+    run = subprocess.run(["node", script, model], capture_output=True, text=True, check=True)
+    found: Record = json.loads(run.stdout)
+    sections = inspect(model.read_bytes())
+    images = sum(each.stored_length for each in sections if each.code == TXTR)
+    without = model.stat().st_size - images
+    return {**found, "page_without_images_bytes": sizes["page_bytes"] + -(-without // 3) * 4}
+
+
+if __name__ == "__main__":
+    main()

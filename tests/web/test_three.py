@@ -1,0 +1,79 @@
+"""The three.js loader and field, by their example pages in Chromium."""
+
+from __future__ import annotations
+
+import functools
+import json
+import threading
+from collections.abc import Iterator
+from http.server import SimpleHTTPRequestHandler, ThreadingHTTPServer
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from nispcodec.format import pack
+from tests import tiny
+from tests.web.programs import HERE, WEB, chromium, npm_package, run_node
+
+
+class Served(SimpleHTTPRequestHandler):
+    """Files of web/, and the model; silent."""
+
+    model = b""
+
+    def do_GET(self) -> None:
+        """The model at its name, else a file."""
+        if self.path != "/three/model.nisp":
+            super().do_GET()
+            return
+        self.send_response(200)
+        self.send_header("Content-Length", str(len(self.model)))
+        self.end_headers()
+        self.wfile.write(self.model)
+
+    def log_message(self, format: str, *args: object) -> None:
+        """Nothing."""
+
+
+@pytest.fixture
+def address(monkeypatch: pytest.MonkeyPatch) -> Iterator[str]:
+    monkeypatch.setattr(Served, "model", pack(tiny.document()))
+    handler = functools.partial(Served, directory=str(WEB))
+    with ThreadingHTTPServer(("127.0.0.1", 0), handler) as server:
+        thread = threading.Thread(target=server.serve_forever, daemon=True)
+        thread.start()
+        yield f"http://127.0.0.1:{server.server_address[1]}"
+        server.shutdown()
+        thread.join()
+
+
+def pixels(seen: dict[str, Any]) -> Any:
+    return np.array(seen["pixels"], np.uint8).reshape(seen["height"], seen["width"], 4)
+
+
+@pytest.mark.slow
+def test_examples_show_meshes_and_a_field_among_meshes(address: str, tmp_path: Path) -> None:
+    npm_package("playwright-core")
+    npm_package("three")
+    said = run_node(HERE / "examples.mjs", chromium(), address, "model.nisp", timeout=900)
+    found = json.loads(said)
+    assert found["said"] == []
+    # The octahedron of radius 0.8 in the asset's own units and place.
+    meshes = found["mesh"]["meshes"]
+    assert {each["material"] for each in meshes} == {"MeshStandardMaterial"}
+    assert {each["name"] for each in meshes} == {"painted", "plain"}
+    low = np.min([each["low"] for each in meshes], axis=0)
+    high = np.max([each["high"] for each in meshes], axis=0)
+    frame = tiny.document().frame
+    assert np.abs((low + high) / 2 - frame.center).max() < 0.03
+    assert np.abs((high - low) / 2 - 0.8 * frame.radius).max() < 0.06
+    assert found["field"]["meshes"][0]["material"] == "ShaderMaterial"
+    for kind in ("mesh", "field"):
+        colors = pixels(found[kind])[..., :3].astype(int)
+        floor = (colors[..., 2] > colors[..., 0]) & (colors[..., 0] > 30)
+        # The floor covers a part of it, and it a part of the floor: depth is written.
+        other = (colors.max(axis=-1) > 0) & ~floor
+        assert floor.mean() > 0.05, kind
+        assert other.mean() > 0.05, kind

@@ -1,0 +1,1 @@
+"""What browsers get: the decoder in JavaScript, the viewer, and the page that holds both."""

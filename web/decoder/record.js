@@ -1,0 +1,154 @@
+import { NISPError } from "./errors.js";
+import { Float } from "./messagepack.js";
+
+/** A map of META whose fields are taken out one by one; a field left over is unknown. */
+export class Record {
+  /**
+   * @param {string} name that errors begin with
+   * @param {unknown} value which must be a map
+   */
+  constructor(name, value) {
+    this.name = name;
+    if (!(value instanceof Map)) throw this.error("map", "a map", typeof value);
+    /** @type {Map<number|string, unknown>} */
+    this.fields = new Map(value);
+  }
+
+  /** @param {string} field @param {unknown} expected @param {unknown} found @returns {NISPError} */
+  error(field, expected, found) {
+    return new NISPError("META", `${this.name}.${field}`, expected, found);
+  }
+
+  /** @param {unknown} holds @param {string} field @param {unknown} expected @param {unknown} found */
+  demand(holds, field, expected, found) {
+    if (!holds) throw this.error(field, expected, found);
+  }
+
+  /**
+   * The raw value, undefined where it is absent and has a default.
+   * @param {number} key
+   * @param {string} field
+   * @param {boolean} optional
+   */
+  take(key, field, optional) {
+    const value = this.fields.get(key);
+    this.fields.delete(key);
+    this.demand(value !== undefined || optional, field, "present", "absent");
+    return value;
+  }
+
+  /**
+   * @template T
+   * @param {number} key
+   * @param {string} field
+   * @param {T|undefined} fallback the default; none where the field must be there
+   * @param {(value: any) => T} convert throws what is no value of the type
+   * @returns {T}
+   */
+  typed(key, field, fallback, convert) {
+    const raw = this.take(key, field, fallback !== undefined);
+    if (raw === undefined) return /** @type {T} */ (fallback);
+    const value = convert(raw);
+    const same = Array.isArray(value) && Array.isArray(fallback) ? equal(value, fallback) : value === fallback;
+    this.demand(!same, field, "absent, being the default", "present");
+    return value;
+  }
+
+  /** @param {number} key @param {string} field @param {number} least @param {number} most @param {number} [fallback] */
+  integer(key, field, least, most, fallback) {
+    return this.typed(key, field, fallback, (value) => {
+      this.demand(typeof value === "number", field, "an integer", typeof value);
+      this.demand(value >= least && value <= most, field, `${least} to ${most}`, value);
+      return /** @type {number} */ (value);
+    });
+  }
+
+  /** @param {number} key @param {string} field @param {number} [fallback] */
+  float(key, field, fallback) {
+    return this.typed(key, field, fallback, (value) => {
+      this.demand(value instanceof Float, field, "a float", typeof value);
+      return /** @type {number} */ (value.value);
+    });
+  }
+
+  /** @param {number} key @param {string} field @param {number} count @param {number[]} [fallback] */
+  floats(key, field, count, fallback) {
+    return this.typed(key, field, fallback, (value) => {
+      const right = Array.isArray(value) && value.length === count && value.every((each) => each instanceof Float);
+      this.demand(right, field, `${count} floats`, "others");
+      return /** @type {number[]} */ (value.map((/** @type {Float} */ each) => each.value));
+    });
+  }
+
+  /** @param {number} key @param {string} field @param {boolean} fallback */
+  bool(key, field, fallback) {
+    return this.typed(key, field, fallback, (value) => {
+      this.demand(typeof value === "boolean", field, "a bool", typeof value);
+      return /** @type {boolean} */ (value);
+    });
+  }
+
+  /** @param {number} key @param {string} field @param {string} [fallback] */
+  text(key, field, fallback) {
+    return this.typed(key, field, fallback, (value) => {
+      this.demand(typeof value === "string", field, "text", typeof value);
+      return this.printable(field, value);
+    });
+  }
+
+  /** Text without control characters. @param {string} field @param {string} text */
+  printable(field, text) {
+    this.demand(!/[\0-\x1f\x7f]/.test(text), field, "no control characters", "some");
+    return text;
+  }
+
+  /**
+   * One of an enumeration.
+   * @template {string} T
+   * @param {number} key
+   * @param {string} field
+   * @param {readonly T[]} names
+   * @param {T} [fallback]
+   */
+  choice(key, field, names, fallback) {
+    return this.typed(key, field, fallback, (value) => {
+      this.demand(typeof value === "number" && names[value - 1], field, `1 to ${names.length}`, value);
+      return names[value - 1];
+    });
+  }
+
+  /** Bytes, undefined where absent. @param {number} key @param {string} field @returns {Uint8Array|undefined} */
+  bytes(key, field) {
+    const value = this.take(key, field, true);
+    this.demand(value === undefined || value instanceof Uint8Array, field, "bytes", typeof value);
+    return /** @type {Uint8Array|undefined} */ (value);
+  }
+
+  /**
+   * An array that must not be empty; undefined where absent.
+   * @param {number} key @param {string} field @param {boolean} optional @returns {unknown[]|undefined}
+   */
+  array(key, field, optional) {
+    const value = this.take(key, field, optional);
+    this.demand(value === undefined || (Array.isArray(value) && value.length), field, "a list, not empty", "another");
+    return /** @type {unknown[]|undefined} */ (value);
+  }
+
+  /** A map, not empty where it is there. @param {number} key @param {string} field @param {boolean} optional */
+  map(key, field, optional) {
+    const value = this.take(key, field, optional);
+    if (value === undefined) return new Record(`${this.name}.${field}`, new Map());
+    const record = new Record(`${this.name}.${field}`, value);
+    this.demand(record.fields.size, field, "a map, not empty", "an empty one");
+    return record;
+  }
+
+  finish() {
+    for (const key of this.fields.keys()) throw this.error("field", "a known field", key);
+  }
+}
+
+/** @param {unknown[]} a @param {unknown[]} b */
+function equal(a, b) {
+  return a.length === b.length && a.every((value, i) => value === b[i]);
+}

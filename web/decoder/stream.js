@@ -1,0 +1,157 @@
+import { halfToNumber } from "./bytes.js";
+import { MAX_CELLS, MAX_SYMBOL } from "./enumerations.js";
+import { readNumberKind } from "./matrices.js";
+
+/**
+ * @typedef {import("./bytes.js").ByteReader} Bytes
+ * @typedef {{narrowness: number, tail: number, zeros: number}} FrequencyModel
+ * @typedef {object} RunHeader
+ * @property {number} count of values
+ * @property {string|null} kind of number; null for symbols
+ * @property {number} top
+ * @property {number} limit
+ * @property {FrequencyModel|null} model
+ */
+
+const SCALE_BITS = 14;
+const SCALE = 1 << SCALE_BITS;
+
+/**
+ * @param {Bytes} reader
+ * @param {number} count
+ * @param {boolean} symbols
+ * @returns {RunHeader}
+ */
+export function readRunHeader(reader, count, symbols) {
+  const kind = symbols ? null : readNumberKind(reader, ["float32", "float16"]);
+  const top = symbols ? MAX_SYMBOL : reader.varint();
+  const most = symbols ? MAX_SYMBOL : kind === "float32" ? 0x7f7fffff : 0x7bff;
+  if (top > most) throw reader.error("top", `at most ${most}`, top);
+  const limit = reader.varint();
+  if (limit > top) throw reader.error("limit", `at most ${top}`, limit);
+  return { count, kind, top, limit, model: limit > 0 ? readModel(reader) : null };
+}
+
+/** @param {Bytes} reader @returns {FrequencyModel} */
+function readModel(reader) {
+  const byte = reader.uint8();
+  const zeros = byte & 128 ? reader.uint8() : 0;
+  if (byte & 128 && zeros === 0) throw reader.error("zeros", "above 0", 0);
+  return { narrowness: byte & 31, tail: (byte >> 5) & 3, zeros };
+}
+
+/**
+ * Values of each record of the stream (section 5.4).
+ * @param {Bytes} reader
+ * @param {RunHeader[]} headers
+ * @returns {Float64Array[]}
+ */
+export function readStream(reader, headers) {
+  const runs = headers.map(({ count, limit, model }) => {
+    const cells = cellsOf(limit).cells;
+    return { count: model ? count : 0, cells, table: model ? frequencies(cells, model) : [] };
+  });
+  const tokens = readTokens(reader, runs);
+  return headers.map((header, i) => {
+    const integers = header.model ? readIntegers(reader, tokens[i], header.limit) : new Float64Array(header.count);
+    return header.kind === null ? integers : integers.map((n) => toFloat(header, n));
+  });
+}
+
+/** Tokens on either side of zero, and open bits. @param {number} limit */
+function cellsOf(limit) {
+  let open = 0;
+  while (limit > MAX_CELLS * 2 ** open) open++;
+  return { cells: Math.ceil(limit / 2 ** open), open };
+}
+
+/**
+ * Integers that sum to 2^14, one for each token from -cells to cells.
+ * Every number stays below 2^53, and every quotient below that of its gap: doubles are exact.
+ * @param {number} cells
+ * @param {FrequencyModel} model
+ */
+function frequencies(cells, { narrowness, tail, zeros }) {
+  const ratio = (2 + (narrowness % 2)) * 2 ** (narrowness >> 1);
+  const wide = 4 * cells * cells * 2 ** tail;
+  const heights = Array.from({ length: cells + 1 }, (_, c) => {
+    let height = Math.floor((wide * 2 ** 24) / (wide + ratio * c * c));
+    for (let i = 0; i < tail; i++) height = Math.floor((height * height) / 2 ** 24);
+    return height + 1;
+  });
+  if (zeros) heights[0] = 0;
+  const total = heights.reduce((sum, height) => sum + 2 * height, -heights[0]);
+  const free = SCALE - (2 * cells + 1);
+  const shared = free - ((free * zeros) >> 8);
+  const above = heights.slice(1).map((height) => 1 + Math.floor((height * shared) / total));
+  const middle = SCALE - 2 * above.reduce((sum, each) => sum + each, 0);
+  return [...above.toReversed(), middle, ...above];
+}
+
+/**
+ * Signed tokens of each run.
+ * @param {Bytes} reader
+ * @param {{count: number, cells: number, table: number[]}[]} runs
+ * @returns {Int32Array[]}
+ */
+function readTokens(reader, runs) {
+  const total = runs.reduce((sum, run) => sum + run.count, 0);
+  const lanes = total === 0 ? 0 : total < SCALE ? 1 : total >> 9;
+  const states = Float64Array.from({ length: lanes }, () => reader.uint16() * 65536 + reader.uint16());
+  if (!states.every((state) => state >= 65536)) throw reader.error("stream", "states of 2^16 or more", "others");
+  let lane = 0;
+  const found = runs.map(({ count, cells, table }) => {
+    const { slots, starts } = slotTable(table);
+    const tokens = new Int32Array(count);
+    for (let i = 0; i < count; i++) {
+      const state = states[lane];
+      const slot = state % SCALE;
+      const token = slots[slot];
+      tokens[i] = token - cells;
+      const next = table[token] * Math.floor(state / SCALE) + slot - starts[token];
+      states[lane] = next < 65536 ? next * 65536 + reader.uint16() : next;
+      if (++lane === lanes) lane = 0;
+    }
+    return tokens;
+  });
+  if (!states.every((state) => state === 65536)) throw reader.error("stream", "states of 2^16 at its end", "others");
+  return found;
+}
+
+/** Which token has each slot, and where tokens start. @param {number[]} table */
+function slotTable(table) {
+  const slots = new Uint16Array(table.length ? SCALE : 0);
+  let start = 0;
+  const starts = table.map((frequency, token) => {
+    slots.fill(token, start, start + frequency);
+    start += frequency;
+    return start - frequency;
+  });
+  return { slots, starts };
+}
+
+/** @param {Bytes} reader @param {Int32Array} tokens @param {number} limit */
+function readIntegers(reader, tokens, limit) {
+  const { open } = cellsOf(limit);
+  const rest = reader.bits(new Uint8Array(tokens.reduce((count, token) => count + (token ? 1 : 0), 0)).fill(open));
+  const integers = new Float64Array(tokens.length);
+  let next = 0;
+  tokens.forEach((token, i) => {
+    if (token === 0) return;
+    const size = (Math.abs(token) - 1) * 2 ** open + rest[next++] + 1;
+    if (size > limit) throw reader.error("magnitude", `at most ${limit}`, size);
+    integers[i] = token < 0 ? -size : size;
+  });
+  return integers;
+}
+
+const SINGLE = new DataView(new ArrayBuffer(4));
+
+/** @param {RunHeader} header @param {number} n */
+function toFloat({ kind, top }, n) {
+  if (n === 0) return 0;
+  const pattern = top + 1 - Math.abs(n);
+  if (kind === "float16") return halfToNumber(pattern) * Math.sign(n);
+  SINGLE.setUint32(0, pattern);
+  return SINGLE.getFloat32(0) * Math.sign(n);
+}

@@ -1,0 +1,190 @@
+import { ByteReader, halfToNumber } from "./bytes.js";
+import { CODINGS, MAX_SYMBOL, MAX_WEIGHTS, STEPS } from "./enumerations.js";
+import { NISPError } from "./errors.js";
+import { initialWeights } from "./initial_weights.js";
+import { readMatrix } from "./matrices.js";
+import { readRunHeader, readStream } from "./stream.js";
+import { shapesOf } from "./topology.js";
+
+/**
+ * @typedef {import("./topology.js").Spec} Spec
+ * @typedef {import("./topology.js").Shape} Shape
+ * @typedef {object} WeightRecord one record of NETS
+ * @property {Shape[]} held tensors
+ * @property {number} count of values
+ * @property {number|null} step
+ * @property {Float64Array|null} values; null where they are in the stream
+ * @property {import("./stream.js").RunHeader|null} header
+ * @property {Float64Array|null} predicted
+ * @property {Uint8Array|null} shifts of each value's row
+ * @typedef {Map<string, {shape: Shape, values: Float32Array}>} Tensors
+ */
+
+/**
+ * The weights of all networks (section 5 of the specification), and how many bytes the records of
+ * each take.
+ * @param {Uint8Array} data
+ * @param {Map<string, Spec>} specs in file order
+ * @returns {{tensors: Map<string, Tensors>, lengths: Map<string, number>}}
+ */
+export function readWeights(data, specs) {
+  const shapes = new Map([...specs].map(([name, spec]) => [name, shapesOf(spec)]));
+  const total = [...shapes.values()].flat().reduce((sum, { rows, columns }) => sum + rows * columns, 0);
+  if (total > MAX_WEIGHTS) throw new NISPError("NETS", "weights", `at most ${MAX_WEIGHTS}`, total);
+  const reader = new ByteReader(data, "NETS");
+  /** @type {Map<string, number>} */
+  const lengths = new Map();
+  const records = [...specs].map(([name, spec]) => {
+    const start = reader.at;
+    const found = readRecords(reader, shapes.get(name) ?? [], spec.initSeed);
+    lengths.set(name, reader.at - start);
+    return found;
+  });
+  fillFromStream(reader, records.flat());
+  reader.end();
+  const tensors = new Map([...specs.keys()].map((name, i) => [name, toTensors(reader, records[i])]));
+  return { tensors, lengths };
+}
+
+/** Gives the records that are in the stream their values. @param {ByteReader} reader @param {WeightRecord[]} records */
+function fillFromStream(reader, records) {
+  const coded = records.filter((record) => record.header);
+  const found = readStream(reader, coded.map((record) => /** @type {any} */ (record.header)));
+  coded.forEach((record, i) => (record.values = found[i]));
+}
+
+/** @param {ByteReader} reader @param {Shape[]} shapes @param {number} seed @returns {WeightRecord[]} */
+function readRecords(reader, shapes, seed) {
+  const records = [];
+  let step = null;
+  let place = 0;
+  for (let at = 0; at < shapes.length; ) {
+    const record = readRecord(reader, shapes.slice(at), step, seed, place);
+    records.push(record);
+    step = record.step;
+    place += record.count;
+    at += record.held.length;
+  }
+  return records;
+}
+
+/**
+ * @param {ByteReader} reader
+ * @param {Shape[]} left tensors that are still to come
+ * @param {number|null} before the step of the record before
+ * @param {number} seed
+ * @param {number} place of the record's first value in the network
+ * @returns {WeightRecord}
+ */
+function readRecord(reader, left, before, seed, place) {
+  const { coding, form, joined } = readTag(reader, left.length);
+  const held = left.slice(0, 1 + joined);
+  const step = form === null ? null : readStep(reader, form, before);
+  const shifts = form?.startsWith("rows") ? readRowShifts(reader, Number(form[4]), held) : null;
+  const count = held.reduce((sum, { rows, columns }) => sum + rows * columns, 0);
+  const record = { held, count, step, values: null, header: null, predicted: null, shifts };
+  if (coding === "delta_init") {
+    if (step === null) throw reader.error("step", "a step with delta_init", "none");
+    return { ...record, ...readDeltas(reader, record, seed, place) };
+  }
+  if (coding === "entropy") return { ...record, header: readRunHeader(reader, count, step !== null) };
+  return { ...record, values: readMatrix(reader, coding, held[0].rows, held[0].columns, step !== null) };
+}
+
+/** @param {ByteReader} reader @param {number} left */
+function readTag(reader, left) {
+  const [coding, form, joined] = readTagNumbers(reader);
+  if (!CODINGS[coding - 1]) throw reader.error("coding", `1 to ${CODINGS.length}`, coding);
+  if (form > STEPS.length) throw reader.error("step", `0 to ${STEPS.length}`, form);
+  const joinable = ["entropy", "delta_init"].includes(CODINGS[coding - 1]);
+  const fits = joined < left && (joinable || joined === 0);
+  if (!fits) throw reader.error("joined", "tensors that follow, in a coding that joins", joined);
+  return { coding: CODINGS[coding - 1], form: form ? STEPS[form - 1] : null, joined };
+}
+
+/** Coding, form of the step, how many more tensors: in one byte, or where that cannot hold them in four. @param {ByteReader} reader */
+function readTagNumbers(reader) {
+  const tag = reader.uint8();
+  if (tag !== 0) return [tag & 7, (tag >> 3) & 7, tag >> 6];
+  const wide = [...reader.bytes(3)];
+  if (wide[0] <= 7 && wide[1] <= 7 && wide[2] <= 3) throw reader.error("tag", "the fewest bytes", "more");
+  return wide;
+}
+
+/** @param {ByteReader} reader @param {string} form @param {number|null} before */
+function readStep(reader, form, before) {
+  const step = readRawStep(reader, form, before);
+  if (step === null || !(step > 0 && step < Infinity)) throw reader.error("step", "finite and above 0", step);
+  return step;
+}
+
+/** @param {ByteReader} reader @param {string} form @param {number|null} before */
+function readRawStep(reader, form, before) {
+  if (form === "same") return before;
+  if (form === "float16") return halfToNumber(reader.uint16());
+  if (form === "float32") return reader.view.getFloat32(reader.skip(4), true);
+  const byte = reader.uint8();
+  return (8 + (byte % 8)) * 2 ** ((byte >> 3) - 30);
+}
+
+/** The row shift of every value. @param {ByteReader} reader @param {number} bits @param {Shape[]} held */
+function readRowShifts(reader, bits, held) {
+  const rows = held.flatMap(({ rows, columns }) => new Array(rows).fill(columns));
+  const shifts = reader.bits(rows.map(() => bits));
+  const found = new Uint8Array(rows.reduce((sum, columns) => sum + columns, 0));
+  let at = 0;
+  rows.forEach((columns, row) => {
+    found.fill(shifts[row], at, at + columns);
+    at += columns;
+  });
+  return found;
+}
+
+/** @param {ByteReader} reader @param {WeightRecord} record @param {number} seed @param {number} place */
+function readDeltas(reader, { held, count, shifts }, seed, place) {
+  const predicted = new Float64Array(count);
+  const initial = initialWeights(seed, place, count);
+  let at = 0;
+  for (const { rows, columns } of held) {
+    const scale = reader.varint();
+    if (scale > MAX_SYMBOL) throw reader.error("initial scale", `at most ${MAX_SYMBOL}`, scale);
+    for (const end = at + rows * columns; at < end; at++) {
+      const shift = shifts ? shifts[at] : 0;
+      predicted[at] = Math.floor((scale * initial[at] + 2 ** (22 + shift)) / 2 ** (23 + shift));
+    }
+  }
+  return { predicted, header: readRunHeader(reader, count, true) };
+}
+
+/** @param {ByteReader} reader @param {WeightRecord[]} records @returns {Tensors} */
+function toTensors(reader, records) {
+  /** @type {Tensors} */
+  const tensors = new Map();
+  for (const record of records) {
+    const weights = toWeights(reader, record);
+    let at = 0;
+    for (const shape of record.held) {
+      const size = shape.rows * shape.columns;
+      tensors.set(shape.name, { shape, values: weights.subarray(at, at + size) });
+      at += size;
+    }
+  }
+  return tensors;
+}
+
+/** @param {ByteReader} reader @param {WeightRecord} record */
+function toWeights(reader, { values, step, predicted, shifts, count }) {
+  const weights = new Float32Array(count);
+  const rounded = step === null ? 1 : Math.fround(step);
+  for (let i = 0; i < count; i++) {
+    let value = values ? values[i] : 0;
+    if (step !== null) {
+      value = (value + (predicted ? predicted[i] : 0)) * 2 ** (shifts ? shifts[i] : 0);
+      if (Math.abs(value) > MAX_SYMBOL) throw reader.error("symbol", `at most ${MAX_SYMBOL}`, value);
+    }
+    // Adding 0 turns a negative zero into 0.
+    weights[i] = Math.fround(value) * rounded + 0;
+    if (!Number.isFinite(weights[i])) throw reader.error("weight", "finite", weights[i]);
+  }
+  return weights;
+}

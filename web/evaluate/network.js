@@ -1,0 +1,322 @@
+import { coordinateCount, inputCount } from "../decoder/topology.js";
+
+/** Points of a block: two layers' activations of it stay in a core's fastest cache. */
+const POINTS = 64;
+
+/** @typedef {{weight: number, bias: number, turned: number, rows: number, columns: number, slope: number}} Layer addresses */
+
+/** A network ready to be evaluated at many points of the normalized frame. */
+export class NetworkEvaluator {
+  /**
+   * @param {import("../decoder/topology.js").Spec} spec
+   * @param {import("../decoder/weights.js").Tensors} tensors
+   * @param {import("./arithmetic.js").Arithmetic} arithmetic
+   */
+  constructor(spec, tensors, arithmetic) {
+    this.spec = spec;
+    this.arithmetic = arithmetic;
+    this.coordinates = coordinateCount(spec);
+    this.inputs = inputCount(spec);
+    this.inputSlopes = 0;
+    /** @type {number|undefined} address of zeros in place of biases */
+    this.nothing = undefined;
+    this.affine = spec.conditioning === "chart_affine";
+    const values = (/** @type {string} */ name) => tensors.get(name)?.values ?? new Float32Array(0);
+    this.embedding = values("embedding");
+    this.slopes = values("slopes");
+    this.offsets = values("offsets");
+    const widest = Math.max(this.inputs, spec.outputs, ...spec.hidden) + 1;
+    this.input = arithmetic.reserve(this.inputs * POINTS);
+    this.buffers = [arithmetic.reserve(widest * POINTS), arithmetic.reserve(widest * POINTS)];
+    this.layers = [...spec.hidden, spec.outputs].map((_, i) =>
+      this.layer(values(`weight.${i}`), values(`bias.${i}`), i < spec.hidden.length),
+    );
+  }
+
+  /**
+   * Sine layers compute sin(pi t): w0 / pi is in their weights.
+   * @param {Float32Array} weight @param {Float32Array} bias @param {boolean} hidden
+   * @returns {Layer}
+   */
+  layer(weight, bias, hidden) {
+    const scale = hidden && this.spec.activation === "sine" ? this.spec.w0 / Math.PI : 1;
+    const rows = bias.length;
+    const columns = weight.length / rows;
+    const layer = {
+      weight: this.matrix(rows, columns, (i, j) => scale * weight[i * columns + j]),
+      bias: this.matrix(rows, 1, (i) => scale * bias[i]),
+      turned: this.spec.outputs === 1 ? this.matrix(columns, rows, (i, j) => scale * weight[j * columns + i]) : 0,
+      rows,
+      columns,
+      slope: hidden && this.spec.outputs === 1 ? this.arithmetic.reserve((rows + 1) * POINTS) : 0,
+    };
+    return layer;
+  }
+
+  /** Stores a matrix, with an even number of rows. @param {number} rows @param {number} columns @param {(i: number, j: number) => number} value */
+  matrix(rows, columns, value) {
+    const at = this.arithmetic.reserve((rows + (rows & 1)) * columns);
+    const all = this.arithmetic.all;
+    for (let i = 0, k = at >> 2; i < rows; i++) {
+      for (let j = 0; j < columns; j++) all[k++] = value(i, j);
+    }
+    return at;
+  }
+
+  /**
+   * Calls `use` for each block of points with what the network gives: where its outputs are in the
+   * memory, a row of POINTS floats for each.
+   * @param {Float32Array} points (3 n)
+   * @param {Int32Array|null} charts (n), wanted by networks that are conditioned
+   * @param {(all: Float32Array, at: number, start: number, count: number) => void} use
+   */
+  blocks(points, charts, use) {
+    const total = points.length / 3;
+    for (let start = 0; start < total; start += POINTS) {
+      const count = Math.min(POINTS, total - start);
+      this.enter(points, charts, start, count);
+      const at = this.forward(false) >> 2;
+      if (this.affine && charts) this.addAffine(points, charts, start, count, at);
+      this.finish(at);
+      use(this.arithmetic.all, at, start, count);
+    }
+  }
+
+  /**
+   * Outputs, point after point.
+   * @param {Float32Array} points (3 n) @param {Int32Array|null} [charts] (n)
+   * @returns {Float32Array} (outputs n)
+   */
+  evaluate(points, charts = null) {
+    const { outputs } = this.spec;
+    const found = new Float32Array((points.length / 3) * outputs);
+    this.blocks(points, charts, (all, at, start, count) => {
+      for (let row = 0; row < outputs; row++) {
+        for (let p = 0; p < count; p++) found[(start + p) * outputs + row] = all[at + row * POINTS + p];
+      }
+    });
+    return found;
+  }
+
+  /**
+   * Number of the largest of the first `among` outputs at each point; 0 where one is NaN.
+   * @param {Float32Array} points (3 n) @param {number} [among]
+   * @returns {Int32Array} (n)
+   */
+  classify(points, among = this.spec.outputs) {
+    const found = new Int32Array(points.length / 3);
+    this.blocks(points, null, (all, at, start, count) => {
+      for (let p = 0; p < count; p++) {
+        let best = 0;
+        let known = true;
+        for (let row = 0; row < among; row++) {
+          const value = all[at + row * POINTS + p];
+          if (Number.isNaN(value)) known = false;
+          if (value > all[at + best * POINTS + p]) best = row;
+        }
+        found[start + p] = known ? best : 0;
+      }
+    });
+    return found;
+  }
+
+  /**
+   * Output `first` less output `second` of each point.
+   * @param {Float32Array} points (3 n) @param {Int32Array} first (n) @param {Int32Array} second (n)
+   */
+  contrast(points, first, second) {
+    const found = new Float32Array(first.length);
+    this.blocks(points, null, (all, at, start, count) => {
+      for (let p = 0; p < count; p++) {
+        found[start + p] = all[at + first[start + p] * POINTS + p] - all[at + second[start + p] * POINTS + p];
+      }
+    });
+    return found;
+  }
+
+  /**
+   * Values and gradients of a network with one output and no conditioning.
+   * @param {Float32Array} points (3 n)
+   * @returns {{values: Float32Array, gradients: Float32Array}} (n), (3 n)
+   */
+  gradient(points) {
+    const total = points.length / 3;
+    const values = new Float32Array(total);
+    const gradients = new Float32Array(3 * total);
+    for (let start = 0; start < total; start += POINTS) {
+      const count = Math.min(POINTS, total - start);
+      this.enter(points, null, start, count);
+      const at = this.forward(true) >> 2;
+      this.finish(at);
+      values.set(this.arithmetic.all.subarray(at, at + count), start);
+      this.backward(at);
+      this.leave(points, start, count, gradients);
+    }
+    return { values, gradients };
+  }
+
+  /** Inputs of a block of points. @param {Float32Array} points @param {Int32Array|null} charts @param {number} start @param {number} count */
+  enter(points, charts, start, count) {
+    const { all } = this.arithmetic;
+    const { spec } = this;
+    if (spec.conditioning !== "none" && !charts) throw new Error("charts: expected one for each point, found none");
+    const at = this.input >> 2;
+    this.sources().forEach(({ axis, absolute }, row) => {
+      for (let p = 0; p < count; p++) {
+        const value = points[3 * (start + p) + axis];
+        all[at + row * POINTS + p] = absolute ? Math.abs(value) : value;
+      }
+    });
+    if (!charts) return this.encode();
+    if (spec.conditioning === "scalar") {
+      const row = at + (this.coordinates - 1) * POINTS;
+      for (let p = 0; p < count; p++) all[row + p] = (2 * charts[start + p] + 1) / spec.charts - 1;
+    }
+    this.encode();
+    const first = at + (this.inputs - spec.embedding) * POINTS;
+    for (let k = 0; k < spec.embedding; k++) {
+      for (let p = 0; p < count; p++) {
+        all[first + k * POINTS + p] = this.embedding[charts[start + p] * spec.embedding + k];
+      }
+    }
+  }
+
+  /** Which axis each coordinate is of, and whether its absolute value enters. */
+  sources() {
+    const { mirror } = this.spec;
+    const folded = [0, 1, 2].map((axis) => ({ axis, absolute: Boolean((mirror >> axis) & 1) }));
+    const followers = [0, 1, 2].filter((axis) => (mirror >> (3 + axis)) & 1);
+    return [...folded, ...followers.map((axis) => ({ axis, absolute: false }))];
+  }
+
+  /** The coordinates' waves in their place, from the last coordinate to the first. */
+  encode() {
+    if (this.spec.encoding !== "fourier") return;
+    const { all } = this.arithmetic;
+    const at = this.input >> 2;
+    const { levels } = this.spec;
+    for (let row = this.coordinates - 1; row >= 0; row--) {
+      const values = all.slice(at + row * POINTS, at + (row + 1) * POINTS);
+      for (let level = 0; level < levels; level++) {
+        const wave = Math.fround(2 ** level * Math.PI);
+        const place = at + 2 * (row * levels + level) * POINTS;
+        for (let p = 0; p < POINTS; p++) {
+          all[place + p] = Math.sin(wave * values[p]);
+          all[place + POINTS + p] = Math.cos(wave * values[p]);
+        }
+      }
+    }
+  }
+
+  /** Address of the last layer's sums. @param {boolean} slopes whether to keep those of the layers */
+  forward(slopes) {
+    const { kernel } = this.arithmetic;
+    let x = this.input;
+    this.layers.forEach(({ weight, bias, rows, columns, slope }, i) => {
+      const y = this.buffers[i & 1];
+      kernel.linear(weight, bias, x, y, rows, columns, POINTS);
+      const hidden = i + 1 < this.layers.length;
+      if (hidden && this.spec.activation === "sine") kernel.sine(y, slopes ? slope : 0, rows * POINTS);
+      else if (hidden) this.rectify(y >> 2, slopes ? slope >> 2 : 0, rows * POINTS);
+      x = y;
+    });
+    return x;
+  }
+
+  /** @param {number} y @param {number} d @param {number} count */
+  rectify(y, d, count) {
+    const { all } = this.arithmetic;
+    for (let i = 0; i < count; i++) {
+      const positive = all[y + i] > 0;
+      if (d) all[d + i] = positive ? 1 : 0;
+      // NaN stays NaN.
+      if (all[y + i] <= 0) all[y + i] = 0;
+    }
+  }
+
+  /** The output's activation. @param {number} at */
+  finish(at) {
+    const { output, outputs } = this.spec;
+    if (output === "identity") return;
+    const { all } = this.arithmetic;
+    for (let i = at; i < at + outputs * POINTS; i++) {
+      all[i] = output === "tanh" ? Math.tanh(all[i]) : 0.5 + 0.5 * Math.tanh(all[i] / 2);
+    }
+  }
+
+  /** @param {Float32Array} points @param {Int32Array} charts @param {number} start @param {number} count @param {number} at */
+  addAffine(points, charts, start, count, at) {
+    const { all } = this.arithmetic;
+    const { outputs } = this.spec;
+    const sources = this.sources();
+    const n = sources.length;
+    for (let p = 0; p < count; p++) {
+      const chart = charts[start + p];
+      for (let i = 0; i < outputs; i++) {
+        let sum = this.offsets[chart * outputs + i];
+        for (let j = 0; j < n; j++) {
+          const value = points[3 * (start + p) + sources[j].axis];
+          sum += this.slopes[(chart * outputs + i) * n + j] * (sources[j].absolute ? Math.abs(value) : value);
+        }
+        all[at + i * POINTS + p] += sum;
+      }
+    }
+  }
+
+  /** From the finished output at `at` to the slopes of the inputs, in place of the inputs' buffer. @param {number} at */
+  backward(at) {
+    const { kernel } = this.arithmetic;
+    const last = this.layers.length - 1;
+    let x = this.outputSlopes(at);
+    for (let i = last; i >= 0; i--) {
+      const { turned, rows, columns, slope } = this.layers[i];
+      if (i < last) kernel.multiply(x, slope, rows * POINTS);
+      const y = x === this.buffers[0] ? this.buffers[1] : this.buffers[0];
+      kernel.linear(turned, this.zeros(), x, y, columns, rows, POINTS);
+      x = y;
+    }
+    this.inputSlopes = x >> 2;
+  }
+
+  /** @param {number} at */
+  outputSlopes(at) {
+    const { all } = this.arithmetic;
+    const { output } = this.spec;
+    for (let i = at; i < at + POINTS; i++) {
+      const value = all[i];
+      all[i] = output === "identity" ? 1 : output === "tanh" ? 1 - value * value : value * (1 - value);
+    }
+    return 4 * at;
+  }
+
+  /** Address of zeros in place of biases. */
+  zeros() {
+    this.nothing ??= this.arithmetic.reserve(Math.max(this.inputs, ...this.spec.hidden) + 1);
+    return this.nothing;
+  }
+
+  /** Slopes of the inputs as gradients of the points. @param {Float32Array} points @param {number} start @param {number} count @param {Float32Array} gradients */
+  leave(points, start, count, gradients) {
+    const { all } = this.arithmetic;
+    this.sources().forEach(({ axis, absolute }, row) => {
+      for (let p = 0; p < count; p++) {
+        const at = 3 * (start + p) + axis;
+        gradients[at] += this.coordinateSlope(all, row, p) * (absolute ? Math.sign(points[at]) : 1);
+      }
+    });
+  }
+
+  /** @param {Float32Array} all @param {number} row @param {number} p */
+  coordinateSlope(all, row, p) {
+    const slopes = this.inputSlopes;
+    const { encoding, levels } = this.spec;
+    if (encoding !== "fourier") return all[slopes + row * POINTS + p];
+    let sum = 0;
+    for (let level = 0; level < levels; level++) {
+      const place = 2 * (row * levels + level) * POINTS + p;
+      const [sine, cosine] = [all[(this.input >> 2) + place], all[(this.input >> 2) + place + POINTS]];
+      sum += 2 ** level * Math.PI * (cosine * all[slopes + place] - sine * all[slopes + place + POINTS]);
+    }
+    return sum;
+  }
+}

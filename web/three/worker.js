@@ -1,0 +1,3 @@
+import { serveExtraction } from "../extract/worker.js";
+
+serveExtraction(/** @type {any} */ (globalThis));

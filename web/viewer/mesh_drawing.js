@@ -1,0 +1,67 @@
+/** A mesh on a graphics processor. */
+export class MeshDrawing {
+  /** @param {WebGL2RenderingContext} gl @param {import("../extract/mesh.js").MeshData} mesh */
+  constructor(gl, mesh) {
+    this.gl = gl;
+    this.groups = mesh.groups;
+    this.array = gl.createVertexArray();
+    gl.bindVertexArray(this.array);
+    [mesh.positions, mesh.normals, mesh.uvs, mesh.charts].forEach((values, i) => {
+      gl.bindBuffer(gl.ARRAY_BUFFER, gl.createBuffer());
+      gl.bufferData(gl.ARRAY_BUFFER, values, gl.STATIC_DRAW);
+      gl.enableVertexAttribArray(i);
+      gl.vertexAttribPointer(i, [3, 3, 2, 1][i], gl.FLOAT, false, 0, 0);
+    });
+    this.triangles = this.indices(mesh.indices);
+    this.sides = this.indices(sidesOf(mesh.indices));
+    this.count = mesh.indices.length;
+    gl.bindVertexArray(null);
+  }
+
+  /** @param {Uint32Array} values */
+  indices(values) {
+    const { gl } = this;
+    const buffer = gl.createBuffer();
+    gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, buffer);
+    gl.bufferData(gl.ELEMENT_ARRAY_BUFFER, values, gl.STATIC_DRAW);
+    return buffer;
+  }
+
+  /**
+   * @param {import("./programs.js").Program} program mesh, in use
+   * @param {import("./materials.js").MaterialSet} materials
+   */
+  draw(program, materials) {
+    const { gl } = this;
+    gl.bindVertexArray(this.array);
+    gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, this.triangles);
+    const see_through = (/** @type {{material: number}} */ group) => materials.materials[group.material].alphaMode === "blend";
+    for (const last of [false, true]) {
+      gl.depthMask(!last);
+      for (const group of this.groups.filter((each) => see_through(each) === last)) {
+        materials.apply(program, group.material, group.textured, 0);
+        gl.drawElements(gl.TRIANGLES, group.count, gl.UNSIGNED_INT, 4 * group.start);
+      }
+    }
+    gl.depthMask(true);
+    gl.bindVertexArray(null);
+  }
+
+  drawSides() {
+    const { gl } = this;
+    gl.bindVertexArray(this.array);
+    gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, this.sides);
+    gl.drawElements(gl.LINES, 2 * this.count, gl.UNSIGNED_INT, 0);
+    gl.bindVertexArray(null);
+  }
+}
+
+/** @param {Uint32Array} indices */
+function sidesOf(indices) {
+  const sides = new Uint32Array(2 * indices.length);
+  indices.forEach((vertex, i) => {
+    sides[2 * i] = vertex;
+    sides[2 * i + 1] = indices[i % 3 === 2 ? i - 2 : i + 1];
+  });
+  return sides;
+}

@@ -1,0 +1,214 @@
+import { parseNISP } from "../decoder/document.js";
+import { decodeImage } from "../evaluate/images.js";
+import { NISPModel } from "../evaluate/model.js";
+import { ExtractionClient } from "../extract/client.js";
+import { Camera } from "./camera.js";
+import { moveByKey, orbit } from "./controls.js";
+import { readOriginal } from "./original.js";
+import { Pane } from "./pane.js";
+import { CHANNELS } from "./renderer.js";
+
+/** Layers wider than this make shaders that take too long: such a file is seen as a mesh alone. */
+const WIDEST_FIELD = 256;
+
+/** The page that `nisp view` shows. */
+export class ViewerPage {
+  /** @param {() => Worker} makeWorker one that runs serveExtraction */
+  constructor(makeWorker) {
+    this.makeWorker = makeWorker;
+    this.camera = new Camera();
+    this.pane = new Pane(/** @type {HTMLCanvasElement} */ (element("model")), this.camera);
+    /** @type {Pane|null} */
+    this.other = null;
+    /** @type {ExtractionClient|null} */
+    this.client = null;
+    /** @type {NISPModel|null} */
+    this.model = null;
+    this.turn = 0;
+    this.listen();
+  }
+
+  get panes() {
+    return this.other ? [this.pane, this.other] : [this.pane];
+  }
+
+  listen() {
+    orbit(element("panes"), this.camera, () => this.panes.forEach((pane) => pane.changed()));
+    document.addEventListener("keydown", (event) => this.press(event));
+    element("field").addEventListener("change", () => this.choose());
+    element("channel").addEventListener("change", () => this.choose());
+    element("wireframe").addEventListener("change", () => this.choose());
+    element("resolution").addEventListener("change", () => this.guarded(() => this.remesh(null)));
+    element("open").addEventListener("change", (event) => {
+      const [file] = /** @type {HTMLInputElement} */ (event.target).files ?? [];
+      if (file) this.drop(file);
+    });
+    document.addEventListener("dragover", (event) => event.preventDefault());
+    document.addEventListener("drop", (event) => {
+      event.preventDefault();
+      const file = event.dataTransfer?.files[0];
+      if (file) this.drop(file);
+    });
+  }
+
+  /** @param {KeyboardEvent} event */
+  press(event) {
+    if (event.target instanceof HTMLInputElement && event.target.type === "range") return;
+    if (event.ctrlKey || event.metaKey || event.altKey) return;
+    const toggled = { f: "field", w: "wireframe" }[event.key];
+    const channel = CHANNELS[Number(event.key) - 1];
+    if (toggled && !input(toggled).disabled) input(toggled).checked = !input(toggled).checked;
+    else if (channel) input("channel").value = channel;
+    else if (!moveByKey(this.camera, event.key)) return;
+    event.preventDefault();
+    this.choose();
+  }
+
+  /** Shows what the controls say. */
+  choose() {
+    const look = { channel: input("channel").value, wireframe: input("wireframe").checked };
+    this.pane.show({ ...look, field: input("field").checked });
+    this.other?.show(look);
+  }
+
+  /** @param {File} file */
+  drop(file) {
+    return this.guarded(async () => {
+      await this.open(new Uint8Array(await file.arrayBuffer()), file.name);
+      element("other").hidden = true;
+      this.other = null;
+    });
+  }
+
+  /** Runs it; says what went wrong. @param {() => Promise<void>} work */
+  async guarded(work) {
+    try {
+      say("");
+      await work();
+    } catch (why) {
+      say(String(/** @type {Error} */ (why).message ?? why));
+      throw why;
+    }
+  }
+
+  /** @param {Uint8Array} file @param {string} name */
+  async open(file, name) {
+    const started = performance.now();
+    const parsed = parseNISP(file);
+    const parseTime = performance.now() - started;
+    this.model = new NISPModel(parsed);
+    this.pane.renderer.setMaterials(parsed.metadata.materials, await decodeImages(parsed.images));
+    const wide = Math.max(...[...parsed.metadata.specs.values()].flatMap((spec) => spec.hidden)) > WIDEST_FIELD;
+    input("field").disabled = wide;
+    if (wide) input("field").checked = false;
+    else this.pane.renderer.setField(this.model);
+    document.title = element("name").textContent = name;
+    showRows("bytes", byteRows(parsed, file.length));
+    showRows("facts", factRows(parsed, parseTime));
+    this.choose();
+    await this.remesh(file);
+  }
+
+  /** Extracts anew; the last call wins. @param {Uint8Array|null} file a new one, or null */
+  async remesh(file) {
+    const turn = ++this.turn;
+    if (file) {
+      this.client?.dispose();
+      this.client = new ExtractionClient(this.makeWorker());
+    }
+    const resolution = Number(input("resolution").value);
+    element("cells").textContent = String(resolution);
+    const started = performance.now();
+    const mesh = await /** @type {ExtractionClient} */ (this.client).extract(file, resolution);
+    if (turn !== this.turn) return;
+    showRows("mesh", meshRows(mesh, performance.now() - started));
+    this.pane.renderer.setMesh(mesh);
+    this.choose();
+  }
+
+  /** The mesh that the file was made from, beside it. @param {unknown} data as view.py writes it */
+  async showOriginal(data) {
+    const original = readOriginal(data);
+    element("other").hidden = false;
+    this.other = new Pane(/** @type {HTMLCanvasElement} */ (element("original")), this.camera);
+    this.other.renderer.setMaterials(original.materials, await decodeImages(original.images));
+    this.other.renderer.setMesh(original.mesh);
+    this.choose();
+  }
+
+  /**
+   * A finished picture, for tests and scripts: RGBA, sRGB-encoded, straight alpha, top row first.
+   * @param {{size: number, azimuth: number, elevation: number, field: boolean, channel: string, original?: boolean}} wanted
+   */
+  picture({ size, azimuth, elevation, field, channel, original = false }) {
+    const camera = Object.assign(new Camera(), { azimuth, elevation });
+    const pane = original ? this.other : this.pane;
+    return /** @type {Pane} */ (pane).renderer.render(camera, { field, channel, wireframe: false }, size, 3);
+  }
+}
+
+/** @param {import("../decoder/document.js").Texture[]} images @returns {Promise<(ImageBitmap|null)[]>} null for one that does not decode */
+async function decodeImages(images) {
+  const found = await Promise.allSettled(images.map(decodeImage));
+  const broken = images.filter((_, i) => found[i].status === "rejected").map((image) => image.name);
+  if (broken.length) say(`images that this browser does not decode, left out: ${broken.join(", ")}`);
+  return found.map((each) => (each.status === "fulfilled" ? each.value : null));
+}
+
+/** @param {string} id @returns {HTMLElement} */
+function element(id) {
+  return /** @type {HTMLElement} */ (document.getElementById(id));
+}
+
+/** @param {string} id @returns {HTMLInputElement} */
+function input(id) {
+  return /** @type {HTMLInputElement} */ (element(id));
+}
+
+/** @param {string} text */
+function say(text) {
+  element("message").textContent = text;
+  element("message").hidden = !text;
+}
+
+/** @param {string} id @param {[string, string][]} rows */
+function showRows(id, rows) {
+  element(id).replaceChildren(
+    ...rows.map(([name, value]) => {
+      const row = document.createElement("tr");
+      for (const text of [name, value]) row.appendChild(document.createElement("td")).textContent = text;
+      return row;
+    }),
+  );
+}
+
+/** @param {import("../decoder/document.js").Document} parsed @param {number} length @returns {[string, string][]} */
+function byteRows(parsed, length) {
+  const images = parsed.bytes.get("TXTR") ?? 0;
+  const rows = [...parsed.bytes].map(([part, bytes]) => [part, bytes.toLocaleString("en")]);
+  return /** @type {[string, string][]} */ ([
+    ...rows,
+    ["without images", (length - images).toLocaleString("en")],
+    ["file", length.toLocaleString("en")],
+  ]);
+}
+
+/** @param {import("../decoder/document.js").Document} parsed @param {number} milliseconds @returns {[string, string][]} */
+function factRows({ metadata, tensors }, milliseconds) {
+  const weights = [...tensors.values()].flatMap((each) => [...each.values()]).reduce((sum, { values }) => sum + values.length, 0);
+  return [
+    ["charts", String(metadata.charts)],
+    ["materials", String(metadata.materials.length)],
+    ["weights", weights.toLocaleString("en")],
+    ["parsed in", `${milliseconds.toFixed(1)} ms`],
+  ];
+}
+
+/** @param {import("../extract/mesh.js").MeshData} mesh @param {number} milliseconds @returns {[string, string][]} */
+function meshRows(mesh, milliseconds) {
+  return [
+    ["triangles", (mesh.indices.length / 3).toLocaleString("en")],
+    ["vertices", (mesh.positions.length / 3).toLocaleString("en")],
+    ["extracted in", `${milliseconds.toFixed(0)} ms`],
+  ];
+}
