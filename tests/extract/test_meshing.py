@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
 
+import nispcodec
 from nispcodec.core.network import Network
 from nispcodec.extract.config import ResolutionConfig
 from nispcodec.extract.isosurface import near_surface
@@ -68,3 +70,11 @@ def test_sheets_get_a_cell_for_half_their_thickness(half_thickness: float, expec
 
 def test_no_surface_at_all_has_a_default_too() -> None:
     assert default_resolution(tiny.octahedron(-1), 0.0) == ResolutionConfig.least
+
+
+@pytest.mark.parametrize("stem", ["uv-nan", "uv-infinite"])
+def test_uvs_that_are_not_finite_become_0(stem: str) -> None:
+    folder = Path(__file__).parents[1] / "conformance"
+    mesh = nispcodec.load(folder / f"{stem}.nisp").to_mesh(32)
+    assert len(mesh.faces) > 0
+    assert not mesh.uvs.any()
