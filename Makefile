@@ -4,7 +4,7 @@
 # make package: sdist and wheel into build/dist, tried in clean environments of every Python that is there
 # make web: what the tests of web/ want besides node and Chromium, by npm
 # make fuzz: RUNS files of a coverage-guided fuzzer against the parser
-# make sanitize: the native backend's tests with the sanitizers of memory and undefined behavior
+# make sanitize: the tests of the native kernels with the sanitizers of memory and undefined behavior, threads with that of threads
 # make bench: every codec on the assets in ASSETS, into build/bench/report.html; one to three hours, goes on where it stopped
 
 PYTHON ?= python3
@@ -12,7 +12,7 @@ ASSETS ?= ../shared/assets
 RUNS ?= 2000000
 TORCH ?= torch==2.13.0
 BIN := .venv/bin
-KERNEL := $(wildcard nispcodec/train/backend/native/kernel/*)
+KERNEL := $(wildcard nispcodec/train/backend/native/kernel/* nispcodec/infer/native/kernel/*)
 
 .PHONY: setup demo test lint docs package web fuzz sanitize bench
 
@@ -64,6 +64,7 @@ test: lint docs package
 fuzz: setup
 	$(BIN)/pip install --disable-pip-version-check -q -c constraints.txt -e '.[fuzz]'
 	$(BIN)/python -m tests.fuzz.fuzz_unpack -runs=$(RUNS) -max_len=4096 -rss_limit_mb=8192 -print_final_stats=1 build/corpus
+	$(BIN)/python -m tests.fuzz.fuzz_mesh -runs=$(RUNS)
 
 # Built apart, and run from there. Python itself has no sanitizer, so theirs is loaded before it; it
 # frees little at its end, so leaks are not told: a test of ours looks at the memory instead.
@@ -72,10 +73,14 @@ SANITIZED := build/sanitize
 sanitize: setup
 	CFLAGS='$(SANITIZE)' CXXFLAGS='$(SANITIZE)' LDFLAGS='$(SANITIZE)' $(BIN)/python setup.py -q build \
 		--force --build-temp $(SANITIZED)/objects --build-lib $(SANITIZED)/lib
-	@echo 'sanitize: $(SANITIZE) in' $(SANITIZED)/lib/nispcodec/train/backend/native/*.so
+	@echo 'sanitize: $(SANITIZE) in' $$(find $(SANITIZED)/lib -name '*.so')
 	LD_PRELOAD="$$(g++ -print-file-name=libasan.so) $$(g++ -print-file-name=libubsan.so)" \
 		ASAN_OPTIONS=detect_leaks=0:quarantine_size_mb=4 UBSAN_OPTIONS=print_stacktrace=1 \
-		$(BIN)/python -m pytest -q --import-mode=importlib -o 'pythonpath=$(SANITIZED)/lib .' tests/train/backend/native
+		$(BIN)/python -m pytest -q --import-mode=importlib -o 'pythonpath=$(SANITIZED)/lib .' tests/train/backend/native tests/infer/native
+	g++ -std=c++17 -O1 -g -fsanitize=thread -pthread -Wno-psabi -DNISP_VECTOR_LENGTH=4 -Wl,--wrap=aligned_alloc \
+		-Inispcodec/train/backend/native/kernel tests/train/backend/native/threads.cpp -o $(SANITIZED)/threads
+	$(SANITIZED)/threads
+	@echo 'sanitize: no races between threads'
 
 bench: setup
 	$(BIN)/python -m benchmarks --assets $(ASSETS)

@@ -1,8 +1,8 @@
-"""Builds the native training backend, where there is a compiler for it; all else: pyproject.toml.
+"""Builds the native kernels, where there is a compiler for them; all else: pyproject.toml.
 
 One library for each instruction set, which Python loads by ctypes: so they are for any Python, and
-the wheel is for a platform, but not for a Python. Without them training takes torch, so nothing
-that goes wrong here may keep anyone from installing.
+the wheel is for a platform, but not for a Python. Without them training takes torch and queries of
+mesh parts take numpy, so nothing that goes wrong here may keep anyone from installing.
 """
 
 from __future__ import annotations
@@ -16,11 +16,15 @@ from setuptools import Extension, setup
 from setuptools.command.bdist_wheel import bdist_wheel
 from setuptools.command.build_ext import build_ext
 
-PACKAGE = "nispcodec.train.backend.native"
-KERNEL = "nispcodec/train/backend/native/kernel"
+# Packages with the folder `kernel`, and what else the compiler is told: searches of a mesh give the
+# same distances to the last bit as numpy, which has no fused operations.
+PACKAGES = {
+    "nispcodec.train.backend.native": ["-ffp-contract=fast"],
+    "nispcodec.infer.native": ["-ffp-contract=off"],
+}
 # -ffast-math is not wanted: kernel/vectors.h says why.
 COMPILE = [
-    *("-std=c++17", "-O3", "-fno-math-errno", "-fno-trapping-math", "-ffp-contract=fast"),
+    *("-std=c++17", "-O3", "-fno-math-errno", "-fno-trapping-math"),
     *("-fvisibility=hidden", "-Wall", "-Wextra", "-Wno-psabi", "-pthread", "-g0"),
 ]
 # Name of the instruction set: floats in a vector, and what the compiler is told.
@@ -39,18 +43,25 @@ def kernels() -> list[Extension]:
     """Those for this machine; none for one that is not known."""
     machine = MACHINES.get(platform.machine(), platform.machine())
     return [
-        Extension(
-            f"{PACKAGE}._kernel_{isa}",
-            [f"{KERNEL}/interface.cpp"],
-            depends=[str(path) for path in sorted(Path(KERNEL).glob("*.h"))],
-            define_macros=[("NISP_VECTOR_LENGTH", str(length))],
-            extra_compile_args=[*COMPILE, *told],
-            extra_link_args=["-pthread"],
-            language="c++",
-            optional=True,
-        )
+        kernel(package, isa, length, [*COMPILE, *of_package, *told])
+        for package, of_package in PACKAGES.items()
         for isa, (length, told) in INSTRUCTION_SETS.get(machine, {}).items()
     ]
+
+
+def kernel(package: str, isa: str, length: int, told: list[str]) -> Extension:
+    """A package's library for an instruction set with vectors of `length` floats."""
+    folder = f"{package.replace('.', '/')}/kernel"
+    return Extension(
+        f"{package}._kernel_{isa}",
+        [f"{folder}/interface.cpp"],
+        depends=[str(path) for path in sorted(Path(folder).glob("*.h"))],
+        define_macros=[("NISP_VECTOR_LENGTH", str(length))],
+        extra_compile_args=told,
+        extra_link_args=["-pthread"],
+        language="c++",
+        optional=True,
+    )
 
 
 class BuildKernels(build_ext):
@@ -65,7 +76,7 @@ class BuildKernels(build_ext):
         except Exception as why:
             self.failure = self.failure or str(why)
         if self.failure:
-            consequence = "no kernel was built, so training takes torch"
+            consequence = "no kernel was built, so training takes torch, queries of meshes numpy"
             sys.stdout.write(f"warning: {consequence}: {self.failure}\n")
 
     def build_extension(self, ext: Extension) -> None:

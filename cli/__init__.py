@@ -12,10 +12,12 @@ from typing import Any
 
 import click
 
+from .ending import Terminated, ending_on_sigterm
 from .errors import Refused, explained, usage
 
 COMMANDS = (
     "encode",
+    "batch",
     "decode",
     "render",
     "sheet",
@@ -29,6 +31,9 @@ COMMANDS = (
     "query",
     "sample",
 )
+
+
+_WHOLE = "files are written whole or not at all"
 
 
 class LazyGroup(click.Group):
@@ -58,12 +63,9 @@ class LazyGroup(click.Group):
         return super().resolve_command(ctx, args)
 
     def invoke(self, ctx: click.Context) -> Any:
-        """Run; what the user can mend becomes `Refused`, Ctrl-C exits with 130."""
+        """Run; what the user can mend becomes `Refused`."""
         try:
             return super().invoke(ctx)
-        except KeyboardInterrupt:
-            click.echo("nisp: interrupted; files are written whole or not at all", err=True)
-            ctx.exit(130)
         except Exception as error:
             said = explained(error, ctx.invoked_subcommand or "")
             if said is None:
@@ -71,9 +73,21 @@ class LazyGroup(click.Group):
             raise Refused(said) from error
 
     def main(self, *args: Any, **kwargs: Any) -> Any:
-        """Run and exit: 0, 130, what the command says, or 2 with one line on standard error."""
+        """Run and exit: 0, what the command says, or 2 with one line on standard error.
+
+        Ctrl-C exits with 130 and SIGTERM with 143, as shells have it.
+        """
         try:
-            code = super().main(*args, **{**kwargs, "standalone_mode": False})
+            with ending_on_sigterm():
+                code = super().main(*args, **{**kwargs, "standalone_mode": False})
+        except click.Abort as why:  # which click makes of Ctrl-C, and of the end of an input
+            if not isinstance(why.__cause__, KeyboardInterrupt):
+                raise
+            click.echo(f"nisp: interrupted; {_WHOLE}", err=True)
+            sys.exit(130)
+        except Terminated:
+            click.echo(f"nisp: terminated; {_WHOLE}", err=True)
+            sys.exit(143)
         except click.exceptions.NoArgsIsHelpError as error:
             error.show()
             sys.exit(error.exit_code)
@@ -87,7 +101,8 @@ class LazyGroup(click.Group):
     "nisp",
     cls=LazyGroup,
     context_settings={"help_option_names": ["-h", "--help"]},
-    epilog="Exit codes: 0 done, 1 `verify` found a fault, 2 an error, 130 interrupted.",
+    epilog="Exit codes: 0 done, 1 `verify` found a fault, 2 an error, 3 `batch` had failures, "
+    "130 interrupted, 143 terminated.",
 )
 @click.version_option(package_name="nispcodec", message="%(prog)s %(version)s")
 def main() -> None:

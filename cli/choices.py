@@ -50,11 +50,25 @@ def engines() -> Iterable[str]:
     return ENGINES
 
 
+def batch_engines() -> Iterable[str]:
+    """Where the assets of a batch are encoded."""
+    from nispcodec.catalogue.config import ENGINES
+
+    return ENGINES
+
+
 def texture_formats() -> Iterable[str]:
     """What images can be made again as."""
     from nispcodec.encode.config import TEXTURE_FORMATS
 
     return TEXTURE_FORMATS
+
+
+def geometries() -> Iterable[str]:
+    """What an asset may be held as."""
+    from nispcodec.encode.config import GEOMETRIES
+
+    return GEOMETRIES
 
 
 def pruning_strategies() -> Iterable[str]:

@@ -44,6 +44,11 @@ COLUMNS: dict[str, dict[str, str]] = {
         "std": "its standard deviation",
     },
     "color": {"psnr": "of base colors at corresponding points, in dB: 6 dB more is half the error"},
+    "normal_map": {
+        "mean": "mean angle between the directions that the normal maps give, in degrees",
+        "p99": "one point in a hundred is further off than this: the wrong chart, mostly",
+        "max": "the largest angle of all points",
+    },
     "charts": {"accuracy": "share of points whose chart is right"},
 }
 

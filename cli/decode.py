@@ -134,7 +134,8 @@ def _written(
     from nispcodec.core.progress import Progress
     from nispcodec.io.save import write_mesh
 
-    listen(Progress(stage="surface", overall=0.0))
+    note = expected(model, how["resolution"])
+    listen(Progress(stage="surface", note=note, overall=0.0))
     if rebake and how["faces"] is None and how["error"] is None:
         how = {**how, "faces": REBAKE_FACES}
     mesh = model.to_mesh(**how)
@@ -145,12 +146,44 @@ def _written(
     return mesh, write_mesh(mesh, output, model.color(mesh.positions) if colors else None)
 
 
+def expected(model: NispModel, resolution: int | None) -> str:
+    """What a fine grid will take, in words; "" for one that nobody has to wait for.
+
+    Raises NispError where it is more memory than there is.
+    """
+    from nispcodec.core.errors import NispError
+    from nispcodec.extract.config import ResolutionConfig
+    from nispcodec.extract.meshing import expected_faces
+
+    config, field = ResolutionConfig(), model.document.field
+    if field is None or resolution is None or resolution <= config.most:
+        return ""
+    faces = expected_faces(field.sdf, resolution)
+    needed, free = faces * config.bytes_per_face, free_memory()
+    said = f"about {faces:,} faces and {needed / 1e9:.1f} GB of memory"
+    if free is not None and needed > free:
+        raise NispError(
+            f"--resolution {resolution}: expected {said}, found {free / 1e9:.1f} GB free: "
+            f"--resolution {int(resolution * (free / needed) ** 0.5)} fits"
+        )
+    return f"resolution {resolution}: {said}"
+
+
+def free_memory() -> int | None:
+    """Bytes of memory that nobody needs, None where the system does not say."""
+    said = Path("/proc/meminfo")
+    if not said.exists():
+        return None
+    lines = dict(line.split(":", 1) for line in said.read_text().splitlines())
+    return int(lines["MemAvailable"].split()[0]) * 1024
+
+
 def baked(model: NispModel, mesh: TexturedMesh, size: int) -> TexturedMesh:
     """The mesh with an atlas and textures of its own."""
     from nispcodec.bake.rebake import rebaked
-    from nispcodec.bake.unwrap import unwrap
+    from nispcodec.bake.unwrap import unwrap, with_collapsed_named
 
-    from .unwrapping import apart, with_collapsed_named
+    from .unwrapping import apart
 
     # The warning of textures that no longer fit is none here: new ones are made.
     atlas = with_collapsed_named(replace(apart(unwrap, mesh), warnings=mesh.warnings))

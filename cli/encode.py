@@ -10,10 +10,11 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from .choices import LibraryChoice, engines, presets, texture_formats
+from .choices import LibraryChoice, engines, geometries, presets, texture_formats
 from .errors import warn
 from .lines import duration
 from .outputs import OutputFile, nisp_suffix, output_option, refuse_overwriting_others
+from .parts import parts_of, why
 from .progress import progress_options, shown
 from .pruning import pruning_options
 from .ranges import Real, Whole
@@ -41,6 +42,13 @@ LARGEST_NETWORKS = 1_000_000
     default="balanced",
     show_default=True,
     help="How long to learn: fast, balanced or best; paper is the published method.",
+)
+@click.option(
+    "--geometry",
+    type=LibraryChoice(geometries),
+    default="auto",
+    show_default=True,
+    help="As a field (networks) or as a mesh (triangles); auto takes what is smaller.",
 )
 @click.option(
     "--target-size",
@@ -72,7 +80,12 @@ LARGEST_NETWORKS = 1_000_000
     is_flag=True,
     help="Fill what no face uses with the colors beside it: no specks at seams.",
 )
-@click.option("--texture-format", type=LibraryChoice(texture_formats), help="Re-encode the images.")
+@click.option(
+    "--texture-format",
+    type=LibraryChoice(texture_formats),
+    help="Re-encode the images. Normal maps and other data keep all channels as sharp: webp is "
+    "lossless for them.",
+)
 @click.option("--texture-quality", type=Whole(1, 100), default=90, show_default=True)
 @pruning_options
 @click.option("--no-textures", is_flag=True, help="Leave the images out.")
@@ -175,6 +188,8 @@ def _report(
             "mesh": source.stat().st_size,
             "textures": sum(len(texture.data) for texture in beside),
         },
+        "held_as": why(model.document),
+        "parts": parts_of(model.document, output.read_bytes()),
         "warnings": list(asset.warnings),
         "measured": dict(model.document.info),
         "seconds": round(seconds, 1),
@@ -184,6 +199,7 @@ def _report(
 def _print_report(report: dict[str, Any]) -> None:
     parts, source = report["bytes"], report["input_bytes"]
     click.echo(f"{report['file']}: {parts['total']:,} bytes, from {sum(source.values()):,}")
+    click.echo(f"  held as {report['held_as']}")
     print_group("bytes", parts, "  ")
     print_group("input_bytes", source, "  ")
     print_group("measured", report["measured"], "  ")

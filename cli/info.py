@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from .parts import parts_of, why
 from .report import number, print_group, print_json, rate
 from .sources import Source, model_argument, parsed
 from .subcommand import json_option, subcommand
@@ -50,8 +51,9 @@ def describe(document: Document, data: bytes) -> Facts:
             "center": list(document.frame.center),
             "radius": document.frame.radius,
         },
-        "charts": len(document.charts),
-        "half_thickness": document.half_thickness,
+        "charts": len(document.chart_materials),
+        "held_as": why(document),
+        "parts": parts_of(document, data),
         "networks": {name: _network(each) for name, each in document.networks.items()},
         "materials": [_material(each, document) for each in document.materials],
         "textures": [_texture(each) for each in document.textures],

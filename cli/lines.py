@@ -120,8 +120,10 @@ def _number(value: float) -> str | None:
 
 
 def duration(seconds: float) -> str:
-    """`0.4 s`, `12 s`, `1 min 20 s`."""
+    """`0.4 s`, `12 s`, `1 min 20 s`, `3 h 20 min`."""
     if seconds < 9.95:
         return f"{seconds:.1f} s"
     minutes, rest = divmod(round(seconds), 60)
+    if minutes >= 60:
+        return f"{minutes // 60} h {minutes % 60} min"
     return f"{minutes} min {rest} s" if minutes else f"{rest} s"

@@ -3,14 +3,18 @@
 from __future__ import annotations
 
 import os
+import sys
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 
 from .sources import parsed, read_file
+
+if TYPE_CHECKING:
+    from nispcodec.core.atomic_write import Writing
 
 Decorator = Callable[[Callable[..., Any]], Callable[..., Any]]
 Suffixes = Callable[[], Sequence[str]]
@@ -28,14 +32,15 @@ class Sink:
         """That of the file in small letters; "" for standard output."""
         return self.path.suffix.lower() if self.path else ""
 
-    def write(self, data: bytes) -> None:
-        """Write all of it; a file whole or not at all."""
+    def write(self, writing: Writing) -> None:
+        """Let `writing` write all of it; a file whole or not at all."""
         from nispcodec.core.atomic_write import write_atomic
 
         if self.path:
-            write_atomic(self.path, data)
+            write_atomic(self.path, writing)
         else:
-            click.echo(data, nl=False)
+            writing(sys.stdout.buffer)
+            sys.stdout.buffer.flush()
 
 
 class OutputFile(click.ParamType):  # type: ignore[type-arg]  # generic in newest click only

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import io
+from collections.abc import Iterator
+from itertools import chain, islice
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, BinaryIO
 
 import click
 
@@ -20,6 +22,8 @@ if TYPE_CHECKING:
 
     Answers = dict[str, AnyArray]
 
+PART = 1 << 18
+"""Rows that are read or written at a time: as text they take many times the memory."""
 COLUMNS = "x,y,z,sdf,chart,u,v,red,green,blue,alpha"
 
 
@@ -56,7 +60,8 @@ def command(
     if as_json and output.path is None:
         print_json({name: values.tolist() for name, values in answers.items()})
         return
-    output.write((_npz if output.suffix == ".npz" else _csv)(asked, answers))
+    write = _write_npz if output.suffix == ".npz" else _write_csv
+    output.write(lambda file: write(file, asked, answers))
     if output.path:
         _report(output.path, len(asked), as_json)
 
@@ -69,7 +74,7 @@ def _report(path: Path, points: int, as_json: bool) -> None:
         click.echo(f"{path}: {points:,} points, {size:,} bytes")
 
 
-def _answers(document: Document, points: Float64Array, frame: str) -> Answers:
+def _answers(document: Document, points: AnyArray, frame: str) -> Answers:
     from nispcodec.model import NispModel
 
     model = NispModel(document)
@@ -82,59 +87,66 @@ def _answers(document: Document, points: Float64Array, frame: str) -> Answers:
     }
 
 
-def read_points(source: Source) -> Float64Array:
-    """(n, 3) float64 from an .npy or a .csv with or without a header line; CSV from a pipe.
+def _parts(count: int) -> Iterator[slice]:
+    return (slice(start, start + PART) for start in range(0, count, PART))
 
-    Raises QueryError, naming the file, for anything else.
+
+def read_points(source: Source) -> AnyArray:
+    """(n, 3) numbers from an .npy or a .csv with or without a header line; CSV from a pipe.
+
+    An .npy is not read but mapped. Raises QueryError, naming the file, for anything else.
     """
-    import numpy as np
-
     from nispcodec.core.errors import QueryError
 
-    readers = {".npy": _read_npy, ".csv": _read_csv}
+    readers = {".npy": _map_npy, ".csv": _read_csv}
     suffix = source.path.suffix.lower() if source.path else ".csv"
     if suffix not in readers:
         raise QueryError(f"{source}: expected .npy or .csv, found {suffix or 'no suffix'}")
-    data = source.read()
     try:
-        points = readers[suffix](data)
+        points = readers[suffix](source)
     except (ValueError, EOFError) as error:
         raise QueryError(f"{source}: expected rows of three numbers, found: {error}") from error
     if points.ndim != 2 or points.shape[1] != 3 or points.dtype.kind not in "fiu":
         raise QueryError(
             f"{source}: expected numbers of shape (n, 3), found {points.dtype} of {points.shape}"
         )
-    return points.astype(np.float64)
+    return points
 
 
-def _read_npy(data: bytes) -> AnyArray:
+def _map_npy(source: Source) -> AnyArray:
     import numpy as np
 
-    return np.lib.format.read_array(io.BytesIO(data), allow_pickle=False)
+    with source.opened() as file:
+        return np.load(file.name, mmap_mode="r", allow_pickle=False)
 
 
-def _read_csv(data: bytes) -> AnyArray:
+def _read_csv(source: Source) -> AnyArray:
     import numpy as np
 
-    lines = data.decode("utf-8-sig").splitlines()
-    has_header = bool(lines) and any(letter in "xyzXYZ" for letter in lines[0])
-    rows = [line.split(",") for line in lines[has_header:] if line.strip()]
-    return np.array(rows, dtype=np.float64).reshape(len(rows), -1)
+    parts: list[Float64Array] = []
+    with source.opened() as file:
+        lines: Iterator[str] = io.TextIOWrapper(file, encoding="utf-8-sig")
+        first = next(lines, "")
+        if not any(letter in "xyzXYZ" for letter in first):
+            lines = chain([first], lines)
+        while part := list(islice(lines, PART)):
+            rows = [line.split(",") for line in part if line.strip()]
+            if rows:
+                parts.append(np.array(rows, dtype=np.float64))
+    return np.concatenate(parts) if parts else np.zeros((0, 0))
 
 
-def _npz(points: Float64Array, answers: Answers) -> bytes:
+def _write_npz(file: BinaryIO, points: AnyArray, answers: Answers) -> None:
     import numpy as np
 
-    buffer = io.BytesIO()
-    np.savez(buffer, allow_pickle=False, **answers)
-    return buffer.getvalue()
+    np.savez(file, allow_pickle=False, **answers)
 
 
-def _csv(points: Float64Array, answers: Answers) -> bytes:
+def _write_csv(file: BinaryIO, points: AnyArray, answers: Answers) -> None:
     import numpy as np
 
-    buffer = io.StringIO()
-    table = np.column_stack([points, *answers.values()])
     formats = ["%.9g"] * 4 + ["%d"] + ["%.9g"] * 6
-    np.savetxt(buffer, table, fmt=formats, delimiter=",", header=COLUMNS, comments="")
-    return buffer.getvalue().encode()
+    file.write(f"{COLUMNS}\n".encode())
+    for part in _parts(len(points)):
+        table = np.column_stack([points[part], *(each[part] for each in answers.values())])
+        np.savetxt(file, table, fmt=formats, delimiter=",")

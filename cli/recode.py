@@ -27,7 +27,12 @@ if TYPE_CHECKING:
     type=LibraryChoice(codings),
     help="Of all weights; by default the smallest for each.",
 )
-@click.option("--texture-format", type=LibraryChoice(texture_formats), help="Re-encode the images.")
+@click.option(
+    "--texture-format",
+    type=LibraryChoice(texture_formats),
+    help="Re-encode the images. Normal maps and other data keep all channels as sharp: webp is "
+    "lossless for them.",
+)
 @click.option("--texture-quality", type=Whole(1, 100), default=90, show_default=True)
 @click.option("--no-textures", is_flag=True, help="Leave the images out.")
 @force_option
@@ -67,7 +72,7 @@ def _without_textures(document: Document) -> Document:
 
 
 def _with_textures(document: Document, kind: str, quality: int) -> Document:
-    from nispcodec.core.texture import reencode
+    from nispcodec.core.texture import data_maps, reencode
 
-    images = reencode(document.textures, kind, quality)
+    images = reencode(document.textures, kind, quality, data_maps(document.materials))
     return replace(document, textures=images)

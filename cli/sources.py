@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, BinaryIO
 
 import click
 
@@ -31,6 +31,15 @@ class Source:
     def read(self) -> bytes:
         """All bytes. Raises NispError, in words, for what cannot be read."""
         return read_file(self.path) if self.path else sys.stdin.buffer.read()
+
+    @contextmanager
+    def opened(self) -> Iterator[BinaryIO]:
+        """All bytes, to be read. Raises NispError, in words, for what cannot be read."""
+        if self.path is None:
+            yield sys.stdin.buffer
+            return
+        with _in_words(self.path), self.path.open("rb") as file:
+            yield file
 
 
 class SourceFile(click.ParamType):  # type: ignore[type-arg]  # generic in newest click only

@@ -19,15 +19,17 @@ from .subcommand import force_option, json_option, subcommand
 def command(model: Source, output: Path, force: bool, as_json: bool) -> None:
     """Write the images of MODEL (.nisp, or - for standard input), byte for byte, into a folder.
 
-    To look at, or to edit: `nisp retexture` puts them back.
+    To look at, or to edit: `nisp retexture` puts them back. A name that comes twice gets a number.
 
     \b
     Example: nisp unpack model.nisp -o textures
     """
     from nispcodec.core.atomic_write import write_atomic
+    from nispcodec.core.texture import distinct_names
 
     textures = parsed(model.read(), model).textures
-    paths = [output / texture.name for texture in textures]  # bare names: no other is allowed
+    # Bare names: no other is allowed. They need not differ.
+    paths = [output / name for name in distinct_names([texture.name for texture in textures])]
     refuse_overwriting(paths, force)
     make_folder(output)
     for path, texture in zip(paths, textures, strict=True):

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import multiprocessing
+import signal
 from collections.abc import Callable
-from concurrent.futures import ProcessPoolExecutor
-from concurrent.futures.process import BrokenProcessPool
-from dataclasses import replace
+from multiprocessing.connection import Connection
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
@@ -18,7 +17,7 @@ def unwrapped(mesh: TexturedMesh) -> TexturedMesh:
 
     Raises NispError without the extra `unwrap`, and where unwrapping crashes.
     """
-    from nispcodec.bake.unwrap import unwrap
+    from nispcodec.bake.unwrap import unwrap, with_collapsed_named
     from nispcodec.core.extras import require
 
     require("xatlas", extra="unwrap", what_for="unwrapping")
@@ -33,28 +32,31 @@ def apart(make: Callable[[TexturedMesh], TexturedMesh], mesh: TexturedMesh) -> T
     from nispcodec.core.errors import NispError
 
     context = multiprocessing.get_context("spawn")
+    answer, told = context.Pipe(duplex=False)
+    child = context.Process(target=_tell, args=(told, make, mesh), daemon=True)
+    child.start()
+    told.close()  # so that the end of the process is the end of what it tells
     try:
-        with ProcessPoolExecutor(1, context) as pool:
-            return pool.submit(make, mesh).result()
-    except BrokenProcessPool as why:
+        found = answer.recv()
+    except EOFError as why:
         raise NispError(
             f"{mesh.name}: expected an atlas, found a crash while unwrapping {len(mesh.faces):,} "
             f"faces: simplify or mend the mesh, or unwrap it in a modeling tool"
         ) from why
+    finally:
+        child.kill()  # Ctrl-C does not wait for it
+        child.join()
+    if isinstance(found, BaseException):
+        raise found
+    return found
 
 
-def with_collapsed_named(mesh: TexturedMesh) -> TexturedMesh:
-    """The mesh with a warning for faces that have an area, but none in their UVs."""
-    import numpy as np
-
-    (a, b, c), (p, q, r) = mesh.corner_uvs.transpose(1, 0, 2), mesh.corners.transpose(1, 0, 2)
-    u, v = b - a, c - a
-    flat = u[:, 0] * v[:, 1] == u[:, 1] * v[:, 0]
-    collapsed = int((flat & (np.cross(q - p, r - p) != 0).any(axis=1)).sum())
-    if not collapsed:
-        return mesh
-    warning = (
-        f"unwrapping: {collapsed} of {len(mesh.faces)} faces got no area in the atlas, being too "
-        f"small for it: scale small parts up, or encode them as an asset of their own"
-    )
-    return replace(mesh, warnings=(*mesh.warnings, warning))
+def _tell(
+    told: Connection, make: Callable[[TexturedMesh], TexturedMesh], mesh: TexturedMesh
+) -> None:
+    """The work of the process. Ctrl-C reaches it too, and is answered by the one that asked."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    try:
+        told.send(make(mesh))
+    except Exception as error:
+        told.send(error)

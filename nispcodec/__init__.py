@@ -20,18 +20,30 @@ from typing import TYPE_CHECKING
 # put the module in the function's place.
 import nispcodec.render  # noqa: F401
 from nispcodec.core.asset import Material, Texture, TexturedMesh, TextureMap
-from nispcodec.core.errors import FitError, FormatError, MeshError, NispError, QueryError
+from nispcodec.core.errors import (
+    FitError,
+    FormatError,
+    MeshError,
+    NispError,
+    NispWarning,
+    QueryError,
+)
 from nispcodec.core.extras import require
-from nispcodec.core.progress import Listener, Progress, silent
+from nispcodec.core.progress import Listener, Progress, warn, warning_listener
 from nispcodec.encode.config import EncodeConfig
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator
+
+    from nispcodec.catalogue.config import BatchConfig
+    from nispcodec.catalogue.job import Result
     from nispcodec.core.arrays import Float32Array
     from nispcodec.encode.config import Tuning
     from nispcodec.metrics.compare import Report
     from nispcodec.model import NispModel
 
 __all__ = [
+    "BatchConfig",
     "EncodeConfig",
     "FitError",
     "FormatError",
@@ -39,6 +51,7 @@ __all__ = [
     "MeshError",
     "NispError",
     "NispModel",
+    "NispWarning",
     "Progress",
     "QueryError",
     "Texture",
@@ -46,6 +59,7 @@ __all__ = [
     "TexturedMesh",
     "compare",
     "encode",
+    "encode_many",
     "load",
     "load_mesh",
     "render",
@@ -83,7 +97,7 @@ def write_mesh(mesh: TexturedMesh, path: str | Path) -> list[Path]:
 def encode(
     mesh: TexturedMesh | str | Path,
     config: EncodeConfig | None = None,
-    progress: Listener = silent,
+    progress: Listener | None = None,
     tuning: Tuning | None = None,
 ) -> NispModel:
     """Fit networks to a mesh, or to the mesh in a file. Needs `pip install 'nispcodec[encode]'`.
@@ -91,6 +105,9 @@ def encode(
     `config` holds what a user chooses, by default `EncodeConfig()`. `progress` is called with each
     `Progress`. `tuning` holds numbers that are not meant to be chosen by users
     (`nispcodec.encode.config`).
+
+    What was left out of a file is warned of by Python's `warnings`, as `NispWarning`; so is what
+    was done about a mesh and its fit, unless a `progress` hears it as `Progress.warning`.
 
     Ctrl-C and errors leave nothing behind. Raises TypeError for what is neither mesh nor path,
     MeshError for a file that cannot be read and when nothing of the mesh can be held by a signed
@@ -100,7 +117,31 @@ def encode(
     require("scipy", "igl", extra="encode", what_for="encoding")
     from nispcodec.encode import recipe
 
-    return recipe.encode(_mesh(mesh), config, progress, tuning)
+    asset = _mesh(mesh)
+    if asset is not mesh:
+        warn(asset.warnings)
+    return recipe.encode(asset, config, progress or warning_listener, tuning)
+
+
+def encode_many(
+    inputs: str | Path | Iterable[str | Path],
+    output: str | Path,
+    config: EncodeConfig | None = None,
+    batch: BatchConfig | None = None,
+) -> Iterator[Result]:
+    """Encode mesh files into a folder, side by side, and yield each asset's result as it comes.
+
+    `inputs` are mesh files, folders, globs and manifests, as `nisp batch` takes them; `output` is a
+    folder, which gets `catalogue.jsonl` and `catalogue.html` too. Both may be URLs, with `pip
+    install 'nispcodec[remote]'`. What an earlier call has done is kept, and told (`Result.kept`);
+    an asset that fails is a result like others (`Result.record`). Closing the iterator stops the
+    work, and a later call goes on. `batch` holds how many at a time, timeouts, memory and engine.
+
+    Raises NispError where another process works in the folder, and for a package that is missing.
+    """
+    from nispcodec.catalogue.many import encode_many as run
+
+    return run(inputs, output, config, batch)
 
 
 def load(path: str | Path) -> NispModel:
@@ -160,7 +201,8 @@ def retexture(
 
     `slot` is "base_color", "normal", "metallic_roughness", "occlusion" or "emissive". `material` is
     a name; without it the image goes to the materials that have a texture there, which must share
-    it. Raises NispError for a slot or material that is not there, and for an unreadable image.
+    it. What is done about the image is warned of. Raises NispError for a slot or material that is
+    not there, and for an unreadable image.
     """
     from nispcodec.edit.retexture import retextured
     from nispcodec.model import NispModel
@@ -170,7 +212,9 @@ def retexture(
         data = path.read_bytes()
     except OSError as why:
         raise NispError(f"{path}: cannot be read: {why.strerror}") from why
-    return NispModel(retextured(model.document, slot, data, path.name, material)[0])
+    document, said = retextured(model.document, slot, data, path.name, material)
+    warn(said)
+    return NispModel(document)
 
 
 def _mesh(given: object) -> TexturedMesh:
@@ -187,4 +231,8 @@ def __getattr__(name: str) -> object:
         from nispcodec.model import NispModel
 
         return NispModel
+    if name == "BatchConfig":
+        from nispcodec.catalogue.config import BatchConfig
+
+        return BatchConfig
     raise AttributeError(f"module 'nispcodec' has no attribute {name!r}")

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import cached_property
+
 import numpy as np
 from numpy.typing import ArrayLike
 
@@ -9,11 +11,12 @@ from nispcodec.core.arrays import Float32Array, Float64Array, Int32Array, IntArr
 from nispcodec.core.asset import TexturedMesh
 from nispcodec.core.document import Document
 from nispcodec.core.errors import QueryError
-from nispcodec.infer.evaluate import classify, evaluate, gradient
+from nispcodec.infer.parts import Union
 
 FRAMES = ("world", "normalized")
-PROJECTION_STEPS = 8
 FAR = 1e6
+# Points that are prepared, or looked up, at a time: both take many times the memory of the answer.
+PART = 1 << 18
 
 
 class NispModel:
@@ -29,29 +32,28 @@ class NispModel:
         self.document = document
         self._images: dict[int, Float32Array] = {}
 
+    @cached_property
+    def parts(self) -> Union:
+        """The field and the meshes, to be asked in the normalized frame without checks."""
+        return Union(self.document)
+
     def sdf(self, points: ArrayLike, frame: str = "world") -> Float32Array:
         """Signed distance to the surface (n,) float32, negative inside, in the units of `frame`."""
         scale = np.float32(self.document.frame.radius if frame == "world" else 1)
-        values: Float32Array = evaluate(self.document.sdf, self._normalized(points, frame))[:, 0]
-        values *= scale
-        return values
+        return self.parts.sdf(self._normalized(points, frame)) * scale
 
     def normals(self, points: ArrayLike, frame: str = "world") -> Float32Array:
         """Unit gradient of the SDF (n, 3) float32, pointing outwards; 0 where the SDF is flat."""
-        _, slopes = gradient(self.document.sdf, self._normalized(points, frame))
-        lengths = np.linalg.norm(slopes, axis=1, keepdims=True)
-        units = np.zeros_like(slopes)
-        np.divide(slopes, lengths, out=units, where=lengths > 0)
-        return units
+        return self.parts.normals(self._normalized(points, frame))
 
     def charts(self, points: ArrayLike, frame: str = "world") -> Int32Array:
-        """The chart that each point belongs to (n,) int32, into `document.charts`."""
-        return self._charts(self._normalized(points, frame))
+        """The chart that each point belongs to (n,) int32, into `chart_materials`."""
+        return self.parts.charts(self._normalized(points, frame))
 
     @property
     def chart_materials(self) -> Int32Array:
         """The material of each chart (k,) int32, into `document.materials`."""
-        return self.document.charts.materials
+        return self.document.chart_materials
 
     def uv(
         self, points: ArrayLike, frame: str = "world", charts: IntArray | None = None
@@ -62,7 +64,9 @@ class NispModel:
         get (0, 0). Raises QueryError for a wrong number of charts and for unknown ones.
         """
         normalized = self._normalized(points, frame)
-        return self._uv(normalized, self._charts(normalized) if charts is None else charts)
+        if charts is None:
+            charts = self.parts.charts(normalized)
+        return self.parts.uv(normalized, _checked(charts, len(normalized), self.parts.chart_count))
 
     def color(self, points: ArrayLike, frame: str = "world") -> Float32Array:
         """Base color (n, 4) float32 RGBA in [0, 1]: RGB is sRGB-encoded, alpha linear.
@@ -73,27 +77,26 @@ class NispModel:
         texture that does not decode.
         """
         normalized = self._normalized(points, frame)
-        charts = self._charts(normalized, len(self.document.charts) - self.document.charts.openings)
-        uvs = self._uv(normalized, charts)
-        table = self.document.charts
+        charts = self.parts.charts(normalized, seen=True)
+        uvs = self.parts.uv(normalized, charts)
         # A face without UV looks nothing up: its material shows its factor, key -1 - material.
-        keys = np.where(table.has_uv, table.materials, -1 - table.materials)[charts]
+        materials, has_uv = self.document.chart_materials, self.document.chart_has_uv
+        keys = np.where(has_uv, materials, -1 - materials)[charts]
         colors = np.empty((len(normalized), 4), np.float32)
-        for key in np.unique(keys).tolist():
-            colors[keys == key] = self._base_color(key, uvs[keys == key])
+        for start in range(0, len(keys), PART):
+            part = slice(start, start + PART)
+            for key in np.unique(keys[part]).tolist():
+                shown = keys[part] == key
+                colors[part][shown] = self._base_color(key, uvs[part][shown])
         return colors
 
     def project(self, points: ArrayLike, frame: str = "world") -> Float64Array:
-        """The points moved along the gradient onto the surface (n, 3) float64, in `frame`.
+        """The points moved onto the surface (n, 3) float64, in `frame`.
 
-        `PROJECTION_STEPS` Newton steps on the fitted field: exact near the surface, approximate far
-        from it.
+        Onto the closest point of a mesh; by Newton steps on a fitted field: exact near its surface,
+        approximate far from it.
         """
-        moved = self._normalized(points, frame)
-        for _ in range(PROJECTION_STEPS):
-            values, slopes = gradient(self.document.sdf, moved)
-            steepness = np.maximum((slopes * slopes).sum(axis=1, keepdims=True), 0.25)
-            moved = moved - values[:, None] * slopes / steepness
+        moved = self.parts.project(self._normalized(points, frame))
         if frame == "world":
             return self.document.frame.to_world(moved)
         return moved.astype(np.float64)
@@ -118,17 +121,6 @@ class NispModel:
 
         return textured_mesh(self.document, resolution, faces, error, keep_spurious)[0]
 
-    def _charts(self, normalized: Float32Array, among: int | None = None) -> Int32Array:
-        network = self.document.chart
-        if network is None:
-            return np.zeros(len(normalized), np.int32)
-        return classify(network, normalized, among)
-
-    def _uv(self, normalized: Float32Array, charts: IntArray) -> Float32Array:
-        from nispcodec.infer.texture_coordinates import asset_uv
-
-        return asset_uv(self.document, normalized, charts)
-
     def _base_color(self, key: int, uvs: Float32Array) -> Float32Array:
         from nispcodec.core.texture import base_color
 
@@ -152,12 +144,26 @@ class NispModel:
             raise QueryError(
                 f"points: expected numbers of shape (n, 3), found {array.dtype} of {array.shape}"
             )
-        normalized = self.document.frame.to_normalized(array) if frame == "world" else array
-        near = (np.abs(normalized) < FAR).all(axis=1)
-        if not near.all():
-            row = int(np.argmin(near))
-            raise QueryError(
-                f"points: expected finite numbers within {FAR:g} radii of the asset, "
-                f"found {array[row].tolist()} in row {row}"
-            )
-        return normalized.astype(np.float32)
+        normalized = np.empty(array.shape, np.float32)
+        for start in range(0, len(array), PART):
+            part = array[start : start + PART]
+            moved = self.document.frame.to_normalized(part) if frame == "world" else part
+            near = (np.abs(moved) < FAR).all(axis=1)
+            if not near.all():
+                row = int(np.argmin(near))
+                raise QueryError(
+                    f"points: expected finite numbers within {FAR:g} radii of the asset, "
+                    f"found {part[row].tolist()} in row {start + row}"
+                )
+            normalized[start : start + PART] = moved
+        return normalized
+
+
+def _checked(charts: IntArray, points: int, count: int) -> IntArray:
+    if charts.shape != (points,) or charts.dtype.kind not in "iu":
+        found = f"{charts.dtype} of shape {charts.shape}"
+        raise QueryError(f"charts: expected an integer for each of {points} points, found {found}")
+    if points and not (charts.min() >= 0 and charts.max() < count):
+        found = f"{charts.min()} to {charts.max()}"
+        raise QueryError(f"charts: expected 0 to {count - 1}, found {found}")
+    return charts

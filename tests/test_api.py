@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -11,6 +12,8 @@ import pytest
 import nispcodec
 from nispcodec.procedural.mug import sample_asset
 from tests import tiny
+from tests.encode.tunings import small
+from tests.geometry.shapes import box_asset
 
 
 @pytest.fixture
@@ -80,3 +83,34 @@ def test_encoding_something_else_is_a_type_error(given: Any) -> None:
 def test_encoding_a_path_that_is_not_there_names_it() -> None:
     with pytest.raises(nispcodec.MeshError, match=r"nowhere\.obj"):
         nispcodec.encode("nowhere.obj")
+
+
+def holed() -> nispcodec.TexturedMesh:
+    """A cube with a face the wrong way round."""
+    mesh = box_asset()
+    faces = mesh.faces.copy()
+    faces[0] = faces[0, ::-1]
+    return replace(mesh, faces=faces)
+
+
+def test_what_was_done_about_a_mesh_is_a_python_warning() -> None:
+    tuning = small(300, 100, 0, 100, 20)
+    with pytest.warns(nispcodec.NispWarning, match="turned faces") as caught:
+        nispcodec.encode(holed(), tuning=tuning)
+    assert {each.filename for each in caught} == {__file__}
+
+
+def test_a_listener_hears_it_instead(recwarn: pytest.WarningsRecorder) -> None:
+    heard: list[str] = []
+    tuning = small(300, 100, 0, 100, 20)
+    nispcodec.encode(holed(), progress=lambda told: heard.append(told.warning), tuning=tuning)
+    assert any("turned faces" in each for each in heard)
+    assert not [each for each in recwarn if each.category is nispcodec.NispWarning]
+
+
+def test_what_is_left_out_of_a_file_is_a_python_warning(tmp_path: Path) -> None:
+    path = tmp_path / "a.obj"
+    nispcodec.write_mesh(box_asset(), path)
+    path.write_text(path.read_text() + "usemtl nowhere\nf 1 2 3\n")
+    with pytest.warns(nispcodec.NispWarning, match="material 'nowhere' is in no material file"):
+        nispcodec.encode(path, tuning=small(300, 100, 0, 100, 20))

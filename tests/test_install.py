@@ -75,6 +75,7 @@ def test_a_plain_install_decodes_queries_verifies_and_converts(model: Path, tmp_
 # The command, the extra that it needs: {0} is a model, {1} a mesh, {2} what to write.
 LACKING = [
     ("encode {1} -o {2}.nisp", "encode"),
+    ("batch {1} -o {2}", "encode"),
     ("encode {1} --unwrap -o {2}.nisp", "unwrap"),
     ("decode {0} --rebake 16 --resolution 16 --faces 100 -o {2}.glb", "unwrap"),
     ("render {0} --size 16 -o {2}.png", "render"),
@@ -123,13 +124,15 @@ def test_an_extra_that_is_asked_for_has_what_is_needed() -> None:
     calls = list(calls_of_require())
     assert calls
     for call in calls:
-        named = {each.arg: ast.literal_eval(each.value) for each in call.keywords}
+        (extra,) = (each.value for each in call.keywords if each.arg == "extra")
         wanted = {ast.literal_eval(each) for each in call.args}
-        assert {DISTRIBUTIONS.get(each, each) for each in wanted} <= requirements(named["extra"])
+        assert {DISTRIBUTIONS.get(each, each) for each in wanted} <= requirements(
+            ast.literal_eval(extra)
+        )
 
 
 def test_all_is_every_extra_of_the_library() -> None:
-    assert EXTRAS["all"] == ["nispcodec[encode,torch,render,unwrap]"]
+    assert EXTRAS["all"] == ["nispcodec[encode,torch,render,unwrap,gltf,remote]"]
 
 
 def test_what_is_there_is_not_complained_about() -> None:

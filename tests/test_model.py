@@ -14,6 +14,7 @@ from nispcodec.core.texture import base_color, decode_image
 from nispcodec.model import NispModel
 from tests import tiny
 from tests.extract.surfaces import assert_closed, assert_sound
+from tests.tiny import field_of, varied
 
 QUERIES = ("sdf", "normals", "charts", "uv", "color", "project")
 FRAME = Frame((1.0, 2.0, 3.0), 2.0)
@@ -71,8 +72,10 @@ def test_given_charts_override_the_predicted(model: NispModel, points: np.ndarra
 
 def test_uv_map_and_charts_without_uv(points: np.ndarray) -> None:
     plain = tiny.document()
-    table = ChartTable(plain.charts.materials, np.array([True, False]), (-1.0, 2.0), (4.0, 3.0))
-    moved = NispModel(replace(plain, charts=table)).uv(points, "normalized")
+    table = ChartTable(
+        field_of(plain).charts.materials, np.array([True, False]), (-1.0, 2.0), (4.0, 3.0)
+    )
+    moved = NispModel(varied(plain, charts=table)).uv(points, "normalized")
     original = NispModel(plain).uv(points, "normalized")
     left = points[:, 0] < 0
     np.testing.assert_allclose(moved[left], original[left] * [4, 3] + [-1, 2], atol=1e-5)
@@ -92,15 +95,17 @@ def test_color_of_a_plain_material_is_its_factor_in_srgb(model: NispModel) -> No
 
 def test_color_without_uv_ignores_the_texture() -> None:
     plain = tiny.document()
-    table = ChartTable(plain.charts.materials, np.array([False, True]))
+    table = ChartTable(field_of(plain).charts.materials, np.array([False, True]))
     materials = (Material("a", (0.0, 1.0, 0.0, 0.5), maps=plain.materials[0].maps),) * 2
-    color = NispModel(replace(plain, charts=table, materials=materials)).color([[-5.0, 0, 0]])
+    color = NispModel(varied(replace(plain, materials=materials), charts=table)).color(
+        [[-5.0, 0, 0]]
+    )
     np.testing.assert_allclose(color, [[0, 1, 0, 0.5]], atol=1e-6)
 
 
 def test_openings_have_no_color_of_their_own(model: NispModel, points: np.ndarray) -> None:
-    table = replace(model.document.charts, has_uv=np.array([True, False]), openings=True)
-    opened = NispModel(replace(model.document, charts=table))
+    table = replace(field_of(model.document).charts, has_uv=np.array([True, False]), openings=True)
+    opened = NispModel(varied(model.document, charts=table))
     assert set(opened.charts(points, "normalized")) == {0, 1}
     uvs = opened.uv(points, "normalized", np.zeros(len(points), int))
     material, texture = model.document.materials[0], model.document.textures[0]
@@ -195,8 +200,8 @@ def test_error_sets_the_size_of_the_mesh(model: NispModel) -> None:
 
 def test_mesh_of_charts_without_uv() -> None:
     plain = tiny.document()
-    table = ChartTable(plain.charts.materials, np.array([True, False]))
-    mesh = NispModel(replace(plain, charts=table)).to_mesh(24)
+    table = ChartTable(field_of(plain).charts.materials, np.array([True, False]))
+    mesh = NispModel(varied(plain, charts=table)).to_mesh(24)
     assert np.array_equal(mesh.has_uv, mesh.face_materials == 0)
 
 
@@ -212,8 +217,20 @@ def test_a_field_without_surface_gives_an_empty_mesh() -> None:
 def test_geometry_only() -> None:
     plain = tiny.document()
     table = ChartTable(np.zeros(1, np.int32), np.zeros(1, np.bool_))
-    bare = NispModel(replace(plain, charts=table, chart=None, uv=None))
+    bare = NispModel(varied(plain, charts=table, chart=None, uv=None))
     mesh = bare.to_mesh(24)
     assert (mesh.uv_faces == -1).all()
     assert not bare.uv(np.zeros((2, 3))).any()
     assert not bare.charts(np.zeros((2, 3))).any()
+
+
+def test_parts_of_many_points_are_as_all_of_them(monkeypatch: pytest.MonkeyPatch) -> None:
+    model = NispModel(tiny.document())
+    points = np.random.default_rng(0).uniform(1, 3, (50, 3))
+    whole = model.color(points), model.sdf(points)
+    monkeypatch.setattr("nispcodec.model.PART", 7)
+    np.testing.assert_array_equal(model.color(points), whole[0])
+    np.testing.assert_array_equal(model.sdf(points), whole[1])
+    points[33] = np.nan
+    with pytest.raises(QueryError, match="in row 33"):
+        model.sdf(points)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 from collections.abc import Sequence
 from io import BytesIO
 from typing import Any
@@ -10,7 +11,7 @@ import numpy as np
 
 from nispcodec.core.arrays import FloatArray, Uint8Array
 from nispcodec.core.asset import Material, Texture, TextureMap
-from nispcodec.core.document import ChartTable, Document, Frame
+from nispcodec.core.document import ChartTable, Document, Field, Frame
 from nispcodec.core.network import Network, NetworkSpec
 
 
@@ -78,10 +79,12 @@ def plane_uv(charts: int) -> Network:
     first = np.hstack([np.vstack([inputs, np.zeros((1, 3))]), embedding])
     last = np.array([[0.25, -0.25, 0, 0, 1.0], [0, 0, 0.25, -0.25, 0.0]])
     spec = NetworkSpec(
-        (5,), 2, conditioning="embedding", charts=charts, embedding=1, activation="relu"
+        (5,), 2, conditioning="chart_affine", charts=charts, embedding=1, activation="relu"
     )
     tensors = {
         "embedding": 0.5 * np.arange(charts)[:, None],
+        "slopes": np.zeros((charts, 6)),
+        "offsets": np.zeros((charts, 2)),
         "weight.0": first,
         "bias.0": np.zeros(5),
         "weight.1": last,
@@ -112,10 +115,27 @@ def document(
     )
     return Document(
         frame=frame or Frame((1.0, 2.0, 3.0), 2.0),
-        charts=ChartTable(np.arange(count, dtype=np.int32) % 2, np.ones(count, np.bool_)),
         materials=materials,
         textures=(png(pixels),),
-        sdf=sdf or octahedron(),
-        chart=chart,
-        uv=plane_uv(count),
+        field=Field(
+            charts=ChartTable(np.arange(count, dtype=np.int32) % 2, np.ones(count, np.bool_)),
+            sdf=sdf or octahedron(),
+            chart=chart,
+            uv=plane_uv(count),
+        ),
     )
+
+
+def varied(document: Document, **changes: Any) -> Document:
+    """The document with changes of its own members or of its field's."""
+    own = {item.name for item in dataclasses.fields(Document)}
+    field = field_of(document)
+    inner = {name: value for name, value in changes.items() if name not in own}
+    outer = {name: value for name, value in changes.items() if name in own}
+    return dataclasses.replace(document, field=dataclasses.replace(field, **inner), **outer)
+
+
+def field_of(document: Document) -> Field:
+    """The document's field, which it has."""
+    assert document.field
+    return document.field

@@ -23,6 +23,7 @@ CODECS = {
     "gltfpack": "gltfpack",
     "draco": "Draco",
     "simplified_draco": "simplify + Draco",
+    "simplified_update_draco": "simplify with moving vertices + Draco",
     "nisp": ".nisp",
     "nisp_paper": ".nisp, the paper's networks",
 }

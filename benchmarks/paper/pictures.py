@@ -20,6 +20,7 @@ import click
 import numpy as np
 
 import nispcodec
+from benchmarks.measuring.field_of import field_of
 from benchmarks.measuring.model_records import measured, models_options
 from benchmarks.measuring.result_file import Record
 from benchmarks.measuring.target import Asked, Target
@@ -110,7 +111,7 @@ def _schedule(model: NispModel, sets: TrainingSets) -> Schedule:
     """How the preset of the model fits its UV network, but for first frequencies and rounding."""
     preset = str(model.document.info.get("preset", "balanced"))
     if preset == "paper":
-        tasks = paper_tasks(len(model.document.charts), sets, TrainConfig())
+        tasks = paper_tasks(len(field_of(model.document).charts), sets, TrainConfig())
         return next(task.schedule for task in tasks if task.name == "uv")
     config = TrainConfig()
     learning = config.networks["uv"]
@@ -145,7 +146,9 @@ def _told(progress: Progress) -> None:
 
 def without_charts(model: NispModel, uv: Network) -> NispModel:
     """The model with another UV network; charts still say which material a point has."""
-    return NispModel(replace(model.document, uv=uv, info={}))
+    return NispModel(
+        replace(model.document, field=replace(field_of(model.document), uv=uv), info={})
+    )
 
 
 @dataclass(frozen=True)
@@ -227,7 +230,7 @@ def measure(path: Path, source: Path, seed: int, threads: int) -> tuple[Record, 
     numbers, drawn = compared(mesh, model, networks)
     ours = numbers["ours"]["color_psnr"]
     record = {
-        "charts": len(model.document.charts),
+        "charts": len(field_of(model.document).charts),
         "weights": {name: each.spec.weight_count for name, each in networks.items()},
         "gains": {name: ours - numbers[name]["color_psnr"] for name in networks},
         **numbers,

@@ -12,8 +12,8 @@ from benchmarks.codecs import Setting
 from benchmarks.measuring.isolated import WorkFailed, isolated
 from benchmarks.measuring.machine import commit
 from benchmarks.measuring.result_file import Record
-from nispcodec.core.asset import Texture
-from nispcodec.core.texture import decode_image, reencode
+from nispcodec.core.asset import Texture, TexturedMesh
+from nispcodec.core.texture import data_maps, decode_image, reencode
 from nispcodec.metrics.psnr import psnr
 
 TEXTURES = "textures"
@@ -33,7 +33,7 @@ def measured(source: Source, setting: Setting) -> tuple[Record, bytes]:
     record["commit"] = commit()
     before = source.mesh.textures
     try:
-        after, cost = isolated(lambda: coded(before, setting))
+        after, cost = isolated(lambda: coded(source.mesh, setting))
         record |= {"bytes": sum(len(texture.data) for texture in after), "encode": asdict(cost)}
         _, cost = isolated(lambda: sum(decode_image(texture).size for texture in after))
         quality, _ = isolated(lambda: picture_psnr(before, after))
@@ -43,11 +43,12 @@ def measured(source: Source, setting: Setting) -> tuple[Record, bytes]:
     return record, b""
 
 
-def coded(textures: Sequence[Texture], setting: Setting) -> Sequence[Texture]:
-    """The images in the format of a setting."""
+def coded(mesh: TexturedMesh, setting: Setting) -> Sequence[Texture]:
+    """The images in the format of a setting, as `--texture-format` writes them."""
     if setting["format"] == ORIGINAL:
-        return textures
-    return reencode(textures, str(setting["format"]), int(setting["quality"]))
+        return mesh.textures
+    data = data_maps(mesh.materials)
+    return reencode(mesh.textures, str(setting["format"]), int(setting["quality"]), data)
 
 
 def picture_psnr(before: Sequence[Texture], after: Sequence[Texture]) -> float:

@@ -15,12 +15,14 @@ CORE = ("nispcodec/core", ":(glob)nispcodec/*.py")
 FORMAT = ("nispcodec/format",)
 TRAIN = ("nispcodec/geometry", "nispcodec/dataset", "nispcodec/train", MESH, FIT)
 ENCODE = (*CORE, *FORMAT, *TRAIN, "nispcodec/encode", "nispcodec/io")
+CATALOGUE = ("nispcodec/catalogue",)
 INFER = ("nispcodec/infer", DECODED)
 DECODE = (*INFER, "nispcodec/extract")
 METRICS = ("nispcodec/metrics",)
 RENDER = ("nispcodec/render",)
 RIVALS = (
     "benchmarks/codecs", "benchmarks/assets/simplify.py", "benchmarks/assets/corners.py",
+    "benchmarks/assets/simplify_update.py", "benchmarks/assets/simplify_update.mjs",
     SIMPLIFY, CORNERS,
 )  # fmt: skip
 
@@ -75,6 +77,11 @@ RESULTS = (
         beside=("paper.md",),
         asks="benchmarks.paper.command",
     ),
+    CommittedResult("batch.json", "benchmarks.catalogue.speed", (*ENCODE, *CATALOGUE)),
+    CommittedResult(
+        "batch_bookkeeping.json", "benchmarks.catalogue.bookkeeping", (*CORE, *CATALOGUE)
+    ),
+    CommittedResult("batch_chaos.json", "benchmarks.catalogue.chaos", (*CORE, *CATALOGUE)),
     CommittedResult("paper_preset.json", "benchmarks.paper.preset", ENCODE),
     CommittedResult("paper_pictures.json", "benchmarks.paper.pictures", (*ROUND_TRIP, *RENDER)),
     CommittedResult("pruning.json", "benchmarks.paper.pruning", (*TRAIN, *FORMAT)),
@@ -83,6 +90,13 @@ RESULTS = (
     CommittedResult("crossover.json", "benchmarks.studies.crossover", (*ROUND_TRIP, *RIVALS)),
     CommittedResult("decoder.json", "benchmarks.studies.decoder", ROUND_TRIP),
     CommittedResult("format.json", "benchmarks.studies.format", (*CORE, *FORMAT)),
+    CommittedResult("mesh_queries.json", "benchmarks.studies.mesh_queries", (*CORE, *INFER)),
+    CommittedResult("mesh_codings.json", "benchmarks.studies.mesh_codings", (*FORMAT, *RIVALS)),
+    CommittedResult(
+        "mesh_parts.json",
+        "benchmarks.studies.mesh_parts",
+        (*CORE, "nispcodec/simplify", *FORMAT, *METRICS, *RIVALS),
+    ),
     CommittedResult(
         "pruning_or_quantizing.json",
         "benchmarks.studies.pruning_or_quantizing",
@@ -90,4 +104,11 @@ RESULTS = (
     ),
     CommittedResult("rounding_loss.json", "benchmarks.studies.rounding_loss", ROUND_TRIP),
     CommittedResult("web_decoder.json", "benchmarks.studies.web_decoder", ("web",)),
+    CommittedResult("training_step.json", "benchmarks.studies.training_step", ("nispcodec/train",)),
+    CommittedResult(
+        "preparation_time.json",
+        "benchmarks.studies.preparation_time",
+        (*CORE, "nispcodec/geometry", "nispcodec/dataset"),
+    ),
+    CommittedResult("random_assets.json", "benchmarks.studies.random_assets", ENCODE),
 )

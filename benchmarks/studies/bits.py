@@ -15,6 +15,7 @@ from pathlib import Path
 import click
 import numpy as np
 
+from benchmarks.measuring.field_of import field_of
 from benchmarks.measuring.machine import commit
 from benchmarks.measuring.result_file import write_result
 from nispcodec.core.arrays import Float64Array
@@ -43,7 +44,7 @@ def entropy(symbols: Float64Array) -> float:
 def written(network: Network) -> int:
     """Bits in the file, with steps and curves."""
     content = weights.encode({"uv": network}, None)
-    return 8 * read_container(write_container([(NETS, True, content)]))[0].stored_length
+    return 8 * read_container(write_container([(NETS, True, content)], {}))[0].stored_length
 
 
 def measured(network: Network) -> Record:
@@ -67,7 +68,11 @@ def main(folder: Path, output: Path | None) -> None:
     table: dict[str, dict[str, Record]] = {}
     for path in sorted(folder.glob("*.nisp")):
         document = unpack(path.read_bytes())
-        networks = {"sdf": document.sdf, "chart": document.chart, "uv": document.uv}
+        networks = {
+            "sdf": field_of(document).sdf,
+            "chart": field_of(document).chart,
+            "uv": field_of(document).uv,
+        }
         table[path.stem] = {name: measured(each) for name, each in networks.items() if each}
         for name, record in table[path.stem].items():
             click.echo(f"{path.stem:<18}{name:<7}{record}")

@@ -46,7 +46,7 @@ def pruned(spec: NetworkSpec, rate: float, precision: type[np.floating]) -> Netw
 def stored(network: Network, coding: str | None) -> int:
     """Bytes of the network in a file."""
     content = weights.encode({"uv": network}, coding)
-    return read_container(write_container([(NETS, True, content)]))[0].stored_length
+    return read_container(write_container([(NETS, True, content)], {}))[0].stored_length
 
 
 def measured() -> dict[str, dict[str, int]]:

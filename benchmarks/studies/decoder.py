@@ -22,6 +22,7 @@ import click
 import numpy as np
 
 from benchmarks.headline.main_job import PRECISE
+from benchmarks.measuring.field_of import field_of
 from benchmarks.measuring.model_records import measured, models_options
 from benchmarks.measuring.result_file import Record
 from benchmarks.measuring.target import Asked, Target, asked_of_each
@@ -35,7 +36,7 @@ from nispcodec.extract.isosurface import extract
 from nispcodec.extract.meshing import textured_mesh
 from nispcodec.format import unpack
 from nispcodec.infer.evaluate import classify, evaluate
-from nispcodec.infer.texture_coordinates import asset_uv
+from nispcodec.infer.field import FieldQueries
 from nispcodec.io.load import load_mesh
 from nispcodec.metrics.compare import compare
 
@@ -190,17 +191,18 @@ def start_seconds(model: Path) -> float:
 def naive(document: Document, resolution: int) -> TexturedMesh:
     """One UV a vertex, as marching cubes alone gives it: smeared across every seam."""
     mesh, _ = textured_mesh(document, resolution)
-    surface, _ = without_noise(document.sdf, extract(document.sdf, resolution))
+    field = field_of(document)
+    surface, _ = without_noise(field.sdf, extract(field.sdf, resolution))
     charts = np.zeros(len(surface.positions), np.int32)
-    if document.chart is not None:
-        charts = classify(document.chart, surface.positions)
+    if field.chart is not None:
+        charts = classify(field.chart, surface.positions)
     return replace(
         mesh,
         positions=document.frame.to_world(surface.positions),
         faces=surface.faces,
-        uvs=asset_uv(document, surface.positions, charts).astype(np.float64),
+        uvs=FieldQueries(field).uv(surface.positions, charts).astype(np.float64),
         uv_faces=surface.faces,
-        face_materials=document.charts.materials[charts[surface.faces[:, 0]]].astype(np.int32),
+        face_materials=field.charts.materials[charts[surface.faces[:, 0]]].astype(np.int32),
     )
 
 
@@ -213,7 +215,7 @@ def fidelity(document: Document, original: TexturedMesh) -> Record:
         "soundness": counted(document),
         "geometry": measured["geometry"],
     }
-    if document.uv is None:
+    if field_of(document).uv is None:
         return record
     smeared = naive(document, report.resolution)
     color, plain = measured["color"], compare(original, smeared)["color"]
@@ -228,7 +230,8 @@ def fidelity(document: Document, original: TexturedMesh) -> Record:
 def measured_asset(model: Path, source: Path, wide: Record) -> Record:
     """Everything about one asset; `wide` is the query speed of 8 x 64 networks."""
     document = unpack(model.read_bytes())
-    queries = query_speed(document.sdf, document.chart, document.uv)
+    field = field_of(document)
+    queries = query_speed(field.sdf, field.chart, field.uv)
     speeds = {name: f"{name}_points_per_second" for name in ("sdf", "uv")}
     return {
         "queries": queries,

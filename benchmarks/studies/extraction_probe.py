@@ -12,6 +12,7 @@ from pathlib import Path
 import click
 import numpy as np
 
+from benchmarks.measuring.field_of import field_of
 from nispcodec.core.document import Document
 from nispcodec.extract.components import without_noise
 from nispcodec.extract.grid import CUBE
@@ -24,8 +25,9 @@ from nispcodec.infer.evaluate import evaluate
 def sparse(document: Document, resolution: int) -> dict[str, float]:
     """Seconds to the bare surface, without noise, and to the finished textured mesh."""
     started, busy = time.perf_counter(), time.process_time()
-    cells = resolution or default_resolution(document.sdf, document.half_thickness)
-    surface, report = without_noise(document.sdf, extract(document.sdf, cells))
+    field = field_of(document)
+    cells = resolution or default_resolution(field.sdf, field.half_thickness)
+    surface, report = without_noise(field.sdf, extract(field.sdf, cells))
     extracted = time.perf_counter() - started
     peak, worked = peak_bytes(), time.process_time() - busy
     started = time.perf_counter()
@@ -50,7 +52,7 @@ def dense(document: Document, resolution: int) -> dict[str, float]:
     started = time.perf_counter()
     axis = np.linspace(-CUBE, CUBE, resolution + 1, dtype=np.float32)
     grid = np.stack(np.meshgrid(axis, axis, axis, indexing="ij"), axis=-1).reshape(-1, 3)
-    values = evaluate(document.sdf, grid).reshape((resolution + 1,) * 3)
+    values = evaluate(field_of(document).sdf, grid).reshape((resolution + 1,) * 3)
     faces = marching_cubes(values, 0.0)[1]  # type: ignore[no-untyped-call]
     seconds = round(time.perf_counter() - started, 3)
     return {"seconds": seconds, "peak_bytes": peak_bytes(), "faces": len(faces)}
@@ -70,7 +72,7 @@ def peak_bytes() -> int:
 def main(model: Path, resolution: int, full: bool) -> None:
     """Extract MODEL at RESOLUTION; 0 for what a plain decode takes."""
     document = unpack(model.read_bytes())
-    extract(document.sdf, 16)
+    extract(field_of(document).sdf, 16)
     click.echo(json.dumps((dense if full else sparse)(document, resolution)))
 
 

@@ -29,7 +29,7 @@ from benchmarks.measuring.machine import commit, machine, versions
 from benchmarks.measuring.result_file import Record, as_json, write_result
 from benchmarks.measuring.target import Asked, Target, asked_of_each
 from nispcodec.core.asset import Material, Texture, TextureMap
-from nispcodec.core.document import ChartTable, Document, Frame
+from nispcodec.core.document import ChartTable, Document, Field, Frame
 from nispcodec.core.network import Network, NetworkSpec
 from nispcodec.core.texture import decode_image
 from nispcodec.format import inspect, pack, unpack
@@ -67,19 +67,19 @@ def made(width: int) -> bytes:
     uv = NetworkSpec((width,) * 4, 2, conditioning="chart_affine", charts=CHARTS, embedding=4)
     image = BytesIO()
     Image.new("RGB", (8, 8), "tan").save(image, "PNG")
+    table = ChartTable(
+        np.zeros(CHARTS, np.int32), np.ones(CHARTS, np.bool_), (-0.25, 0.5), (1.5, 0.75)
+    )
     document = Document(
         frame=Frame((0.0, 0.25, 0.5), 1.0),
-        charts=ChartTable(
-            np.zeros(CHARTS, np.int32),
-            np.ones(CHARTS, np.bool_),
-            (-0.25, 0.5),
-            (1.5, 0.75),
-        ),
         materials=(Material("initialShadingGroup", maps={"base_color": TextureMap(0)}),),
         textures=(Texture("spot_texture.png", image.getvalue(), "image/png"),),
-        sdf=quantized(NetworkSpec((width,) * 4, 1), 0),
-        chart=quantized(NetworkSpec((width,) * 3, CHARTS), 1),
-        uv=quantized(uv, 2),
+        field=Field(
+            charts=table,
+            sdf=quantized(NetworkSpec((width,) * 4, 1), 0),
+            chart=quantized(NetworkSpec((width,) * 3, CHARTS), 1),
+            uv=quantized(uv, 2),
+        ),
         info=INFO,
     )
     return pack(document)

@@ -5,6 +5,8 @@ python -m benchmarks.studies.preparation_time OLD --labels ../shared/assets/spot
 OLD is another checkout of this project. Each asset is prepared by it and by this one in turns, each
 time in a process of its own; a table shows seconds (of the quickest turn), the seconds of each
 processor together, and the highest memory. With `--labels` OLD labels the points of this build too.
+With `--write benchmarks/results/preparation_time.json` all of it is kept. Ratios are of the seconds
+of processors: others on the machine make the wall time longer, and these hardly.
 """
 
 from __future__ import annotations
@@ -16,7 +18,7 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import fields
 from pathlib import Path
 from typing import Any
@@ -24,9 +26,14 @@ from typing import Any
 import click
 import numpy as np
 
+from benchmarks.measuring.machine import commit, machine, versions
+from benchmarks.measuring.result_file import Record, write_result
+from benchmarks.measuring.target import Asked, Target, asked_of_each
+
 HERE = Path(__file__).resolve()
 Seconds = dict[str, list[float]]
 SETS = ("near_surface", "cube", "asymmetric", "thin_walls", "closing_surface", "surface")
+RATIO = Target("seconds of processors, new / old", ("ratio",), 0.3)
 AGAIN = ("undersampled_charts", "by_texture_gradient", "by_chart_error")
 
 
@@ -35,27 +42,51 @@ AGAIN = ("undersampled_charts", "by_texture_gradient", "by_chart_error")
 @click.argument("assets", type=click.Path(path_type=Path, exists=True), nargs=-1, required=True)
 @click.option("--turns", default=2, show_default=True)
 @click.option("--labels", is_flag=True, help="Compare labels of the same points.")
-def main(old: Path, assets: tuple[Path, ...], turns: int, labels: bool) -> None:
+@click.option("--write", type=click.Path(path_type=Path), help="The result file.")
+def main(old: Path, assets: tuple[Path, ...], turns: int, labels: bool, write: Path | None) -> None:
     """Print a table of seconds for each asset, and the shares of labels that differ."""
-    new = HERE.parents[2]
-    ratios = []
+    new, found = HERE.parents[2], {}
     for asset in assets:
-        runs: dict[str, list[Any]] = {"old": [], "new": []}
-        for _ in range(turns):
-            for name, place in (("old", old), ("new", new)):
-                runs[name].append(_run(place, "time", asset))
-        best = {name: min(found, key=lambda r: r["total"][0]) for name, found in runs.items()}
-        ratios.append(best["new"]["total"][0] / best["old"]["total"][0])
-        click.echo(f"{asset.stem}: {ratios[-1]:.2f}  (wall, processor seconds)")
-        for part in best["old"] | best["new"]:
-            shown = (best[name].get(part, [0.0, 0.0]) for name in ("old", "new"))
-            click.echo(f"  {part:24}" + " -> ".join(f"{w:8.2f} {c:8.2f}" for w, c in shown))
+        found[asset.stem] = record = _by_turns(old, new, asset, turns)
+        click.echo("\n".join(_table(asset.stem, record)))
         if labels:
-            with tempfile.TemporaryDirectory() as folder:
-                points = Path(folder) / "sets.npz"
-                _run(new, "write", asset, points)
-                click.echo(f"  labels that differ: {_run(old, 'compare', asset, points)}")
+            record["labels_that_differ"] = _labels_that_differ(old, new, asset)
+            click.echo(f"  labels that differ: {record['labels_that_differ']}")
+    ratios = [record["ratio"] for record in found.values()]
     click.echo(f"mean ratio {np.mean(ratios):.3f}, worst {max(ratios):.3f}")
+    if write:
+        where = {"commit": commit(), "old": commit(old), "machine": machine()}
+        write_result(write, where | {"versions": versions(), "assets": found})
+
+
+def asked(results: Record) -> Iterator[Asked]:
+    """The targets of every asset in a result file."""
+    return asked_of_each(results["assets"], lambda asset: [RATIO])
+
+
+def _by_turns(old: Path, new: Path, asset: Path, turns: int) -> Record:
+    """By build and part [wall, processor seconds] of the turn with the fewest of processors."""
+    runs: dict[str, list[Any]] = {"old": [], "new": []}
+    for _ in range(turns):
+        for name, place in (("old", old), ("new", new)):
+            runs[name].append(_run(place, "time", asset))
+    best: Record = {name: min(each, key=lambda r: r["total"][1]) for name, each in runs.items()}
+    return best | {"ratio": best["new"]["total"][1] / best["old"]["total"][1]}
+
+
+def _table(asset: str, record: Record) -> Iterator[str]:
+    yield f"{asset}: {record['ratio']:.2f}  (wall, processor seconds)"
+    for part in record["old"] | record["new"]:
+        shown = (record[name].get(part, [0.0, 0.0]) for name in ("old", "new"))
+        yield f"  {part:24}" + " -> ".join(f"{w:8.2f} {c:8.2f}" for w, c in shown)
+
+
+def _labels_that_differ(old: Path, new: Path, asset: Path) -> Record:
+    with tempfile.TemporaryDirectory() as folder:
+        points = Path(folder) / "sets.npz"
+        _run(new, "write", asset, points)
+        found: Record = _run(old, "compare", asset, points)
+    return found
 
 
 def _run(place: Path, *what: object) -> Any:

@@ -1,22 +1,27 @@
 """Random assets through every preset: none may end in an error.
 
     python -m benchmarks.studies.random_assets [--count 50] [--share 0.1] [--presets fast,best]
+        [--write benchmarks/results/random_assets.json]
 
 Turned bodies of random profiles, closed or open, and wavy sheets; one to four in an asset, each
-with one or two charts. `--share` of a preset's steps, as whole fits of fifty assets take an hour.
+with one or two charts. `--share` of a preset's samples and steps, as whole fits of fifty assets
+take an hour; probes are whole, or all assets would seem to be of fine detail.
 """
 
 from __future__ import annotations
 
 import time
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import replace
+from pathlib import Path
 
 import click
 import numpy as np
 
 import nispcodec
-from benchmarks.measuring.result_file import Record, as_json
+from benchmarks.measuring.machine import commit, machine, versions
+from benchmarks.measuring.result_file import Record, as_json, write_result
+from benchmarks.measuring.target import Asked, Target
 from nispcodec import EncodeConfig, NispError, Progress, TexturedMesh
 from nispcodec.core.arrays import Float64Array, Int32Array
 from nispcodec.encode.config import Tuning
@@ -27,27 +32,45 @@ Surface = tuple[Float64Array, Float64Array]
 
 
 @click.command()
+@click.option("--first", default=0, show_default=True, help="Number of the first asset.")
 @click.option("--count", default=50, show_default=True)
-@click.option("--share", default=0.1, show_default=True, help="Of the steps of a preset.")
+@click.option("--share", default=0.1, show_default=True, help="Of samples and steps.")
 @click.option("--presets", default="fast,balanced,best", show_default=True)
-def main(count: int, share: float, presets: str) -> None:
+@click.option("--threads", default=0, help="Of an encode; 0: all. Few on a busy machine.")
+@click.option("--write", type=click.Path(path_type=Path), help="The result file.")
+def main(
+    first: int, count: int, share: float, presets: str, threads: int, write: Path | None
+) -> None:
     """Encode them all; exits with 1 when one fails."""
-    records = list(runs(count, share, presets.split(",")))
-    print(as_json({"encodes": records}))
-    raise SystemExit(any("error" in record for record in records))
+    where = {"commit": commit(), "machine": machine(), "versions": versions()}
+    records = list(runs(range(first, first + count), share, presets.split(","), threads))
+    failed = sum("error" in record for record in records)
+    result = where | {"share": share, "failed": failed, "encodes": records}
+    if write:
+        write_result(write, result)
+    print(as_json(result))
+    raise SystemExit(failed > 0)
 
 
-def runs(count: int, share: float, presets: list[str]) -> Iterator[Record]:
+def asked(results: Record) -> Iterator[Asked]:
+    """No encode may fail."""
+    yield Asked("all", Target("encodes that failed", ("failed",), 0), results)
+
+
+def runs(
+    numbers: Iterable[int], share: float, presets: list[str], threads: int = 0
+) -> Iterator[Record]:
     """A record for every asset and preset."""
-    for number in range(count):
+    for number in numbers:
         mesh = random_asset(np.random.default_rng(number))
         for preset in presets:
-            found = encoded(mesh, preset, number, share)
+            config = EncodeConfig(preset, number, threads=threads)
+            found = encoded(mesh, config, share)
             click.echo(f"{number} {preset} {found}", err=True)
             yield {"asset": number, "preset": preset, **found}
 
 
-def encoded(mesh: TexturedMesh, preset: str, seed: int, share: float) -> Record:
+def encoded(mesh: TexturedMesh, config: EncodeConfig, share: float) -> Record:
     """What the encoder measured, its warnings and seconds; or the error."""
     notes: list[str] = []
 
@@ -57,7 +80,7 @@ def encoded(mesh: TexturedMesh, preset: str, seed: int, share: float) -> Record:
 
     started = time.monotonic()
     try:
-        model = nispcodec.encode(mesh, EncodeConfig(preset, seed), heard, shortened(share))
+        model = nispcodec.encode(mesh, config, heard, shortened(share))
     except NispError as error:
         return {"error": str(error)}
     seconds = round(time.monotonic() - started, 1)
@@ -65,13 +88,14 @@ def encoded(mesh: TexturedMesh, preset: str, seed: int, share: float) -> Record:
 
 
 def shortened(share: float) -> Tuning:
-    """The usual numbers, with a share of the steps."""
+    """The usual numbers, with a share of the samples and steps."""
     usual = Tuning()
     budgets = {
         name: replace(budget, steps=max(1, round(share * budget.steps)))
         for name, budget in usual.training.budgets.items()
     }
-    return replace(usual, training=replace(usual.training, budgets=budgets))
+    training = replace(usual.training, budgets=budgets)
+    return replace(usual, training=training, sampling=usual.sampling.shared(share))
 
 
 def random_asset(random: np.random.Generator) -> TexturedMesh:

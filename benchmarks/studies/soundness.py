@@ -12,6 +12,7 @@ from pathlib import Path
 import click
 import numpy as np
 
+from benchmarks.measuring.field_of import field_of
 from benchmarks.measuring.result_file import write_result
 from nispcodec.core.arrays import BoolArray, Float32Array, Int32Array, Int64Array
 from nispcodec.core.asset import TexturedMesh
@@ -19,7 +20,7 @@ from nispcodec.core.document import Document
 from nispcodec.extract.meshing import textured_mesh
 from nispcodec.format import unpack
 from nispcodec.infer.evaluate import classify
-from nispcodec.infer.texture_coordinates import asset_uv
+from nispcodec.infer.field import FieldQueries
 
 # UVs are told apart by more than what rounding positions to the world frame and back can do.
 SAME_UV = 1e-3
@@ -44,14 +45,15 @@ def soundness(document: Document, mesh: TexturedMesh) -> dict[str, int]:
 
 def two_chart_triangles(document: Document, mesh: TexturedMesh) -> int:
     """Triangles whose three UVs are no single chart's, asked of the networks anew."""
-    if document.uv is None:
+    field = field_of(document)
+    if field.uv is None:
         return 0
     points = document.frame.to_normalized(mesh.positions).astype(np.float32)
     left = np.flatnonzero(mesh.has_uv)
-    if document.chart is not None:
+    if field.chart is not None:
         middles = points[mesh.faces[left]].mean(axis=1, dtype=np.float32)
-        left = left[~_agrees(document, mesh, points, left, classify(document.chart, middles))]
-    for chart in range(len(document.charts)):
+        left = left[~_agrees(document, mesh, points, left, classify(field.chart, middles))]
+    for chart in range(len(field.charts)):
         charts = np.full(len(left), chart, np.int32)
         left = left[~_agrees(document, mesh, points, left, charts)]
     return len(left)
@@ -66,7 +68,7 @@ def _agrees(
 ) -> BoolArray:
     """Whether all corners of each face (f,) have the UVs that its chart gives them."""
     corners = points[mesh.faces[faces]].reshape(-1, 3)
-    expected = asset_uv(document, corners, np.repeat(charts, 3)).reshape(-1, 3, 2)
+    expected = FieldQueries(field_of(document)).uv(corners, np.repeat(charts, 3)).reshape(-1, 3, 2)
     difference = np.abs(mesh.uvs[mesh.uv_faces[faces]] - expected)
     return np.asarray((difference < SAME_UV).all(axis=(1, 2)))
 
@@ -76,7 +78,8 @@ def counted(document: Document) -> dict[str, int]:
 
     Membranes across the asset's openings are left in, as the rims that they leave are no cracks.
     """
-    closed = replace(document, charts=replace(document.charts, openings=False))
+    field = field_of(document)
+    closed = replace(document, field=replace(field, charts=replace(field.charts, openings=False)))
     mesh, report = textured_mesh(closed)
     counts = soundness(closed, mesh)
     return {"resolution": report.resolution, **counts, "dropped_components": report.dropped}

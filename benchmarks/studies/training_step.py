@@ -11,7 +11,7 @@ that nothing else holds up, on the same core, just before.
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from itertools import pairwise
 from pathlib import Path
 
@@ -21,6 +21,7 @@ import torch
 
 from benchmarks.measuring.machine import commit, machine, versions
 from benchmarks.measuring.result_file import Record, as_json, write_result
+from benchmarks.measuring.target import Asked, Target, asked_of_each
 from nispcodec.core.arrays import Float32Array, Int32Array
 from nispcodec.core.network import NetworkSpec
 from nispcodec.core.sample_set import SampleSet
@@ -45,6 +46,11 @@ NETWORKS: dict[str, tuple[NetworkSpec, str]] = {
 }
 
 
+OF_TORCH = {"sdf 4x24": 0.12, "sdf 5x66": 0.4}
+"""How long a step may take, against torch's."""
+SHARE_OF_PEAK = {"sdf 5x66": 0.7}
+
+
 @click.command()
 @click.option("--seconds", default=2.0, help="That each network's turns take.")
 @click.option("--write", type=click.Path(path_type=Path), help="The result file.")
@@ -52,10 +58,25 @@ def main(seconds: float, write: Path | None) -> None:
     """Measure every network on every instruction set."""
     torch.set_num_threads(1)
     found = {name: measured(*network, seconds) for name, network in NETWORKS.items()}
-    result = {"commit": commit(), "machine": machine(), "versions": versions(), "networks": found}
+    where = {"commit": commit(), "machine": machine(), "versions": versions()}
+    result = where | {"best": available()[0], "networks": found}
     if write:
         write_result(write, result)
     print(as_json(result))
+
+
+def asked(results: Record) -> Iterator[Asked]:
+    """The targets of every network in a result file, on the best instruction set."""
+    best = results["best"]
+
+    def targets(network: str) -> Iterator[Target]:
+        if network in OF_TORCH:
+            yield Target("a step, of torch's", ("of_torch", best), OF_TORCH[network])
+        if network in SHARE_OF_PEAK:
+            place = ("share_of_peak", best)
+            yield Target("share of the peak", place, SHARE_OF_PEAK[network], at_least=True)
+
+    return asked_of_each(results["networks"], targets)
 
 
 def measured(spec: NetworkSpec, loss: str, seconds: float) -> Record:

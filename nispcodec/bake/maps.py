@@ -43,7 +43,7 @@ def baked_maps(
 
 def _texels(model: NispModel, slot: str, charts: Int32Array, uvs: Float32Array) -> Float32Array:
     document = model.document
-    has_uv, owners = document.charts.has_uv[charts], document.charts.materials[charts]
+    has_uv, owners = document.chart_has_uv[charts], document.chart_materials[charts]
     texels = np.empty((len(charts), 3), np.float32)
     texels[:] = BY_NAME[slot].blank[:3]
     for number in np.unique(owners).tolist():

@@ -35,6 +35,21 @@ def unwrap(mesh: TexturedMesh) -> TexturedMesh:
     )
 
 
+def with_collapsed_named(mesh: TexturedMesh) -> TexturedMesh:
+    """The mesh with a warning for faces that have an area, but none in their UVs."""
+    (a, b, c), (p, q, r) = mesh.corner_uvs.transpose(1, 0, 2), mesh.corners.transpose(1, 0, 2)
+    u, v = b - a, c - a
+    flat = u[:, 0] * v[:, 1] == u[:, 1] * v[:, 0]
+    collapsed = int((flat & (np.cross(q - p, r - p) != 0).any(axis=1)).sum())
+    if not collapsed:
+        return mesh
+    warning = (
+        f"unwrapping: {collapsed} of {len(mesh.faces)} faces got no area in the atlas, being too "
+        f"small for it: scale small parts up, or encode them as an asset of their own"
+    )
+    return replace(mesh, warnings=(*mesh.warnings, warning))
+
+
 def _without_maps(mesh: TexturedMesh) -> TexturedMesh:
     if not mesh.textures:
         return mesh

@@ -4,16 +4,21 @@ from __future__ import annotations
 
 import os
 import tempfile
+from collections.abc import Callable
 from pathlib import Path
+from typing import BinaryIO
 
 from nispcodec.core.errors import NispError
 
+Writing = Callable[[BinaryIO], object]
 
-def write_atomic(path: Path, data: bytes) -> None:
+
+def write_atomic(path: Path, data: bytes | Writing) -> None:
     """Write to a temporary file beside `path`, flush it to disk, rename it over `path`.
 
-    Permissions are those of a new file. Raises NispError, and leaves what was there, when the
-    folder cannot be written, or `path` has a character that no path can have.
+    `data` are the bytes, or what writes them into the file that it is given. Permissions are those
+    of a new file. Raises NispError, and leaves what was there, when the folder cannot be written,
+    or `path` has a character that no path can have.
     """
     expect_path(path)
     try:
@@ -23,7 +28,10 @@ def write_atomic(path: Path, data: bytes) -> None:
     temporary = Path(name)
     try:
         with os.fdopen(handle, "wb") as file:
-            file.write(data)
+            if isinstance(data, bytes):
+                file.write(data)
+            else:
+                data(file)
             file.flush()
             os.fsync(file.fileno())
         temporary.chmod(0o666 & ~_umask())

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from dataclasses import field as default
 
 import numpy as np
 
 from nispcodec.core.arrays import BoolArray, Float64Array, FloatArray, Int32Array
 from nispcodec.core.asset import Material, Texture
 from nispcodec.core.errors import FormatError
+from nispcodec.core.mesh_part import MeshPart, Placement
 from nispcodec.core.network import MAX_CHARTS, Network
 
 
@@ -52,12 +54,79 @@ class ChartTable:
 
 
 @dataclass(frozen=True)
-class Document:
-    """The content of one file.
+class StoredSection:
+    """An ancillary section as its payload stands in a file: it is unknown, and not looked into.
 
-    `sdf` is always there; `chart` only when there are two charts or more; `uv` only when some chart
-    has UV. `half_thickness` (normalized frame) is given to open surfaces, 0 when there are none;
-    with it the surface has parts as thin as twice this.
+    decoded_length  bytes of the content of a packed payload, None where the payload is the content
+    """
+
+    payload: bytes
+    decoded_length: int | None = None
+
+
+@dataclass(frozen=True)
+class Field:
+    """The part of an asset that networks hold: its SDF, its charts, its UVs.
+
+    `chart` is there only when there are two charts or more, `uv` only when some chart has UV.
+    `half_thickness` (normalized frame) is given to open surfaces, 0 when there are none; with it
+    the surface has parts as thin as twice this. Raises FormatError for networks that do not fit
+    the chart table.
+    """
+
+    charts: ChartTable
+    sdf: Network
+    chart: Network | None = None
+    uv: Network | None = None
+    half_thickness: float = 0.0
+
+    def __post_init__(self) -> None:
+        k = len(self.charts)
+        _demand("document.charts", 1 <= k <= MAX_CHARTS, f"1 to {MAX_CHARTS}", k)
+        if self.charts.openings:
+            _demand("document.openings", k > 1, "two charts or more", k)
+            _demand(
+                "document.openings", not self.charts.has_uv[-1], "a last chart without UV", "UV"
+            )
+        _demand("networks.sdf", self.sdf.spec.outputs == 1, 1, self.sdf.spec.outputs)
+        self._check_chart(k)
+        self._check_uv(k)
+
+    def _check_chart(self, k: int) -> None:
+        found = f"{k} charts"
+        _demand(
+            "networks.chart",
+            (self.chart is not None) == (k > 1),
+            "one for two charts or more",
+            found,
+        )
+        if self.chart is not None:
+            _demand("networks.chart", self.chart.spec.outputs == k, k, self.chart.spec.outputs)
+
+    def _check_uv(self, k: int) -> None:
+        dressed = int(self.charts.has_uv.sum())
+        found = f"{dressed} charts with UV"
+        _demand(
+            "networks.uv", (self.uv is not None) == (dressed > 0), "one when a chart has UV", found
+        )
+        if self.uv is not None:
+            _demand("networks.uv", self.uv.spec.outputs == 2, 2, self.uv.spec.outputs)
+            conditioned = self.uv.spec.conditioning != "none"
+            expected = k if conditioned else 0
+            _demand("networks.uv", self.uv.spec.charts == expected, k, self.uv.spec.charts)
+
+    @property
+    def networks(self) -> dict[str, Network]:
+        """The networks that are there, by name: sdf, chart, uv."""
+        named = {"sdf": self.sdf, "chart": self.chart, "uv": self.uv}
+        return {name: network for name, network in named.items() if network is not None}
+
+
+@dataclass(frozen=True)
+class Document:
+    """The content of one file: a field, meshes, or both.
+
+    Charts are numbered through: those of the field, then those of every placement of every mesh.
     `info` holds what was measured and how the file was made: plain str, int, float and bool values.
     `extra` holds the ancillary sections that this version does not know, by four-character code:
     they are kept when the document is written again.
@@ -65,79 +134,73 @@ class Document:
     """
 
     frame: Frame
-    charts: ChartTable
     materials: tuple[Material, ...]
     textures: tuple[Texture, ...]
-    sdf: Network
-    chart: Network | None = None
-    uv: Network | None = None
-    half_thickness: float = 0.0
-    info: Mapping[str, str | int | float | bool] = field(default_factory=dict)
-    extra: Mapping[str, bytes] = field(default_factory=dict)
+    field: Field | None = None
+    meshes: tuple[MeshPart, ...] = ()
+    info: Mapping[str, str | int | float | bool] = default(default_factory=dict)
+    extra: Mapping[str, StoredSection] = default(default_factory=dict)
 
     def __post_init__(self) -> None:
-        self._check_tables()
-        self._check_maps()
-        self._check_networks()
-
-    def _check_tables(self) -> None:
-        k = len(self.charts)
-        _demand("charts", 1 <= k <= MAX_CHARTS, f"1 to {MAX_CHARTS}", k)
-        _demand("frame", self.frame.radius > 0, "a positive radius", self.frame.radius)
-        _demand("materials", len(self.materials) > 0, "at least one", 0)
-        materials = self.charts.materials
+        _demand("document.frame", self.frame.radius > 0, "a positive radius", self.frame.radius)
         _demand(
-            "chart materials",
+            "document.parts",
+            bool(self.meshes) or self.field is not None,
+            "a field or a mesh",
+            "none",
+        )
+        _demand("document.materials", len(self.materials) > 0, "at least one", 0)
+        self._check_charts()
+        self._check_maps()
+
+    def _check_charts(self) -> None:
+        materials = self.chart_materials
+        _demand(
+            "document.charts",
+            1 <= len(materials) <= MAX_CHARTS,
+            f"1 to {MAX_CHARTS}",
+            len(materials),
+        )
+        _demand(
+            "document.chart_materials",
             materials.min() >= 0 and materials.max() < len(self.materials),
             f"0 to {len(self.materials) - 1}",
             f"{materials.min()} to {materials.max()}",
         )
-        if self.charts.openings:
-            _demand("openings", k > 1, "two charts or more", k)
-            _demand("openings", not self.charts.has_uv[-1], "a last chart without UV", "UV")
 
     def _check_maps(self) -> None:
-        for material in self.materials:
+        for number, material in enumerate(self.materials):
             for slot, used in material.maps.items():
                 _demand(
-                    f"{material.name}.{slot}",
+                    f"materials.{number}.maps.{slot}.texture",
                     0 <= used.texture < len(self.textures),
                     f"a texture below {len(self.textures)}",
                     used.texture,
                 )
 
-    def _check_networks(self) -> None:
-        k = len(self.charts)
-        _demand("sdf outputs", self.sdf.spec.outputs == 1, 1, self.sdf.spec.outputs)
-        _demand(
-            "chart network",
-            (self.chart is not None) == (k > 1),
-            "one for two charts or more",
-            f"{k} charts",
-        )
-        _demand(
-            "uv network",
-            (self.uv is not None) == bool(self.charts.has_uv.any()),
-            "one when a chart has UV",
-            f"{int(self.charts.has_uv.sum())} charts with UV",
-        )
-        if self.chart is not None:
-            _demand("chart outputs", self.chart.spec.outputs == k, k, self.chart.spec.outputs)
-        if self.uv is not None:
-            _demand("uv outputs", self.uv.spec.outputs == 2, 2, self.uv.spec.outputs)
-            conditioned = self.uv.spec.conditioning != "none"
-            _demand(
-                "uv charts",
-                self.uv.spec.charts == (k if conditioned else 0),
-                k,
-                self.uv.spec.charts,
-            )
-
     @property
     def networks(self) -> dict[str, Network]:
-        """The networks that are there, by name: sdf, chart, uv."""
-        named = {"sdf": self.sdf, "chart": self.chart, "uv": self.uv}
-        return {name: network for name, network in named.items() if network is not None}
+        """The field's networks by name: sdf, chart, uv; none without a field."""
+        return self.field.networks if self.field else {}
+
+    @property
+    def chart_materials(self) -> Int32Array:
+        """(k,) int32: the material of each chart."""
+        own = [self.field.charts.materials] if self.field else []
+        return np.concatenate([*own, *(_materials(each, to) for each, to in self._placed())])
+
+    @property
+    def chart_has_uv(self) -> BoolArray:
+        """(k,) bool: which charts have texture coordinates."""
+        own = [self.field.charts.has_uv] if self.field else []
+        return np.concatenate([*own, *(each.chart_has_uv for each, _ in self._placed())])
+
+    def _placed(self) -> Iterator[tuple[MeshPart, Placement]]:
+        return ((each, placement) for each in self.meshes for placement in each.placements)
+
+
+def _materials(part: MeshPart, placement: Placement) -> Int32Array:
+    return part.chart_materials if placement.materials is None else placement.materials
 
 
 def _demand(field_name: str, holds: bool, expected: object, found: object) -> None:

@@ -7,6 +7,10 @@ class NispError(Exception):
     """Base of all errors that a user can cause and fix."""
 
 
+class NispWarning(UserWarning):
+    """Something about an asset or its fit that its owner should know."""
+
+
 class MeshError(NispError):
     """An input asset cannot be read or makes no sense.
 

@@ -18,7 +18,7 @@ from nispcodec.core.errors import FormatError
 from nispcodec.core.initial_weights import initial_integers
 
 ENCODINGS = ("identity", "fourier")
-CONDITIONINGS = ("none", "scalar", "embedding", "chart_affine")
+CONDITIONINGS = ("none", "scalar", "chart_affine")
 TABLES = ("embedding", "slopes", "offsets")
 """Tensors with a row for each chart."""
 ACTIVATIONS = ("sine", "relu")
@@ -38,10 +38,10 @@ class NetworkSpec:
     encoding     "identity": x; "fourier": for each coordinate p, sin(2^i pi p), cos(2^i pi p) for
                  i = 0 ... levels-1 (paper, eq. 7), coordinate after coordinate
     conditioning how the chart number c of `charts` enters: "none"; "scalar": (2c + 1) / charts - 1
-                 is a fourth coordinate, encoded like the others; "embedding": row c of a table of
-                 `embedding` numbers a chart is appended to the encoded point; "chart_affine":
-                 that, and an affine map of the coordinates, row c of `slopes` and `offsets`, is
-                 added to what the last layer gives
+                 is a further coordinate, encoded like the others; "chart_affine": row c of a table
+                 of `embedding` numbers a chart is appended to the encoded point, and an affine map
+                 of the coordinates, row c of `slopes` and `offsets`, is added to what the last
+                 layer gives
     hidden       widths of the hidden layers
     activation   "sine": sin(w0 (W x + b)); "relu": max(0, W x + b)
     output       activation of the last layer
@@ -71,15 +71,15 @@ class NetworkSpec:
         _member("conditioning", self.conditioning, CONDITIONINGS)
         _member("activation", self.activation, ACTIVATIONS)
         _member("output", self.output, OUTPUTS)
-        _within("hidden layers", len(self.hidden), 1, MAX_HIDDEN_LAYERS)
+        _within("hidden", len(self.hidden), 1, MAX_HIDDEN_LAYERS)
         for width in self.hidden:
-            _within("hidden width", width, 1, MAX_WIDTH)
+            _within("hidden", width, 1, MAX_WIDTH)
         _within("outputs", self.outputs, 1, MAX_CHARTS)
         fourier, conditioned = self.encoding == "fourier", self.conditioning != "none"
         _within("levels", self.levels, int(fourier), 16 if fourier else 0)
         _within("charts", self.charts, int(conditioned), MAX_CHARTS if conditioned else 0)
-        embedded = self.conditioning in ("embedding", "chart_affine")
-        _within("embedding", self.embedding, int(embedded), 64 if embedded else 0)
+        affine = self.conditioning == "chart_affine"
+        _within("embedding", self.embedding, int(affine), 64 if affine else 0)
         if not 0 < self.w0 <= 1000:
             raise FormatError("network", "w0", "a number in (0, 1000]", self.w0)
         _within("mirror", self.mirror, 0, 63)
@@ -115,9 +115,8 @@ class NetworkSpec:
         """Name and shape of every weight tensor, in file order."""
         widths = (self.inputs, *self.hidden, self.outputs)
         shapes: dict[str, tuple[int, ...]] = {}
-        if self.embedding:
-            shapes["embedding"] = (self.charts, self.embedding)
         if self.conditioning == "chart_affine":
+            shapes["embedding"] = (self.charts, self.embedding)
             shapes["slopes"] = (self.charts, self.outputs * self.coordinates)
             shapes["offsets"] = (self.charts, self.outputs)
         for layer, (fan_in, fan_out) in enumerate(pairwise(widths)):

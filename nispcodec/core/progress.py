@@ -2,8 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import sys
+import warnings
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
+
+from nispcodec.core.errors import NispWarning
+
+_PACKAGE = __name__.split(".")[0]
 
 
 @dataclass(frozen=True)
@@ -40,3 +46,18 @@ Listener = Callable[[Progress], None]
 
 def silent(_: Progress) -> None:
     """A listener that ignores all progress."""
+
+
+def warning_listener(update: Progress) -> None:
+    """A listener for those who gave none: warnings go Python's way, the rest is ignored."""
+    if update.warning:
+        warn([update.warning])
+
+
+def warn(sentences: Iterable[str]) -> None:
+    """Warn of each by Python's `warnings`, as from the line that called this package."""
+    level, frame = 1, sys._getframe()
+    while frame.f_back and frame.f_globals.get("__name__", "").split(".")[0] == _PACKAGE:
+        level, frame = level + 1, frame.f_back
+    for each in sentences:
+        warnings.warn(each, NispWarning, stacklevel=level)

@@ -9,11 +9,11 @@ import io
 import struct
 import warnings
 import zlib
-from collections.abc import Iterable, Sequence
+from collections.abc import Collection, Iterable, Sequence
 from dataclasses import replace
 from itertools import count
 from pathlib import PurePath
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -28,6 +28,7 @@ from nispcodec.core.arrays import (
 )
 from nispcodec.core.asset import Material, Texture
 from nispcodec.core.errors import MeshError
+from nispcodec.core.slots import BY_NAME
 
 if TYPE_CHECKING:
     import PIL.Image
@@ -48,6 +49,12 @@ BROKEN_IMAGE = (
 """What Pillow's readers raise for malformed files."""
 # The formats of textures, by Pillow's name: others may start programs, or write where they like.
 _FORMATS = ("PNG", "JPEG", "WEBP", "AVIF")
+# What keeps every channel at the full resolution, by format.
+_SHARP: dict[str, dict[str, Any]] = {
+    "jpeg": {"subsampling": "4:4:4"},
+    "avif": {"subsampling": "4:4:4"},
+    "webp": {"lossless": True, "exact": True},
+}
 
 
 def image_size(texture: Texture) -> tuple[int, int]:
@@ -91,29 +98,59 @@ def decode_image(texture: Texture) -> Float32Array:
         raise MeshError(f"texture {texture.name}: expected an image, found: {why}") from why
 
 
-def reencode(textures: Iterable[Texture], kind: str, quality: int) -> tuple[Texture, ...]:
+def data_maps(materials: Iterable[Material]) -> frozenset[int]:
+    """The numbers of the textures whose texels are data to some material, and no colors."""
+    return frozenset(
+        used.texture
+        for material in materials
+        for slot, used in material.maps.items()
+        if not BY_NAME[slot].srgb
+    )
+
+
+def reencode(
+    textures: Iterable[Texture], kind: str, quality: int, data: Collection[int] = ()
+) -> tuple[Texture, ...]:
     """The same images as other files: `kind` "webp", "avif" or "jpeg", `quality` 1 to 100.
 
-    JPEG holds no transparency: images that have some stay as they are. Names get the suffix of
-    their kind and stay different. Raises MeshError as `decode_image` does.
+    Those whose numbers are in `data` keep all channels as sharp (`encode_image`); where that takes
+    more bytes than the file they come from, they stay as they are. JPEG holds no transparency:
+    images that have some stay too. Names get the suffix of their kind and stay different. Raises
+    MeshError as `decode_image` does.
     """
-    again: list[Texture] = []
-    for texture in textures:
-        fresh, taken = _reencoded(texture, kind, quality), {other.name for other in again}
-        path, tries = PurePath(fresh.name), count(2)
-        while fresh.name in taken:
-            fresh = replace(fresh, name=f"{path.stem}-{next(tries)}{path.suffix}")
-        again.append(fresh)
-    return tuple(again)
+    again = [
+        _reencoded(texture, kind, quality, number in data)
+        for number, texture in enumerate(textures)
+    ]
+    names = distinct_names([texture.name for texture in again])
+    return tuple(replace(texture, name=name) for texture, name in zip(again, names, strict=True))
 
 
-def _reencoded(texture: Texture, kind: str, quality: int) -> Texture:
+def distinct_names(names: Sequence[str]) -> list[str]:
+    """The file names, a number added where one is taken: wood.png, wood-2.png.
+
+    Names that differ in case alone are taken for the same: they are on some disks.
+    """
+    found: list[str] = []
+    taken: set[str] = set()
+    for name in names:
+        path, tries, free = PurePath(name), count(2), name
+        while free.casefold() in taken:
+            free = f"{path.stem}-{next(tries)}{path.suffix}"
+        found.append(free)
+        taken.add(free.casefold())
+    return found
+
+
+def _reencoded(texture: Texture, kind: str, quality: int, is_data: bool) -> Texture:
     pixels = image_bytes(texture)
     if kind == "jpeg" and not _is_opaque(pixels):
         return texture
+    encoded = encode_image(pixels, kind, quality, is_data)
+    if is_data and len(encoded) >= len(texture.data):
+        return texture
     suffix = "jpg" if kind == "jpeg" else kind
-    name = f"{PurePath(texture.name).stem}.{suffix}"
-    return Texture(name, encode_image(pixels, kind, quality), f"image/{kind}")
+    return Texture(f"{PurePath(texture.name).stem}.{suffix}", encoded, f"image/{kind}")
 
 
 def image_bytes(texture: Texture) -> Uint8Array:
@@ -121,17 +158,18 @@ def image_bytes(texture: Texture) -> Uint8Array:
     return np.rint(decode_image(texture) * 255).astype(np.uint8)
 
 
-def encode_image(pixels: Uint8Array, kind: str, quality: int) -> bytes:
+def encode_image(pixels: Uint8Array, kind: str, quality: int, is_data: bool = False) -> bytes:
     """The bytes of an image file of pixels (h, w, 4) RGBA, sRGB-encoded, top row first.
 
     `kind` is "png", which ignores `quality`, "webp", "avif" or "jpeg"; `quality` is 1 to 100. Alpha
-    is left out where it is 255 everywhere.
+    is left out where it is 255 everywhere. Lossy formats hold color at half the resolution; where
+    `is_data` they hold it at the full one, and WebP, which cannot, is lossless.
     """
     import PIL.Image
 
     file = io.BytesIO()
     image = PIL.Image.fromarray(pixels[..., :3] if _is_opaque(pixels) else pixels)
-    image.save(file, kind, quality=quality)
+    image.save(file, kind, quality=quality, **(_SHARP.get(kind, {}) if is_data else {}))
     return file.getvalue()
 
 
@@ -145,23 +183,29 @@ def sample_texture(
     wrap: tuple[str, str] = ("repeat", "repeat"),
     filter: str = "linear",
 ) -> Float32Array:
-    """Colors (n, c) float32 of an (h, w, c) image at (n, 2) finite UVs, origin bottom-left.
+    """Colors (n, c) float32 of an (h, w, c) image at (n, 2) UVs, origin bottom-left.
 
     Texel centers lie at half-integers, as in OpenGL and glTF; `wrap` and `filter` are those of
-    `TextureMap`. Never filters between mip levels.
+    `TextureMap`. A coordinate that is NaN or infinite counts as 0. Never filters between mip
+    levels.
     """
     height, width = image.shape[:2]
-    x = np.asarray(uv[:, 0], dtype=np.float64) * width
-    y = (1.0 - np.asarray(uv[:, 1], dtype=np.float64)) * height
+    # Texels by one index each: numpy takes thrice as long for a row and a column.
+    texels = image.reshape(height * width, -1)
+    u, v = np.nan_to_num(np.asarray(uv, dtype=np.float64), posinf=0.0, neginf=0.0).T
+    x, y = u * width, (1.0 - v) * height
     if filter == "nearest":
-        return image[_texel(np.floor(y), height, wrap[1]), _texel(np.floor(x), width, wrap[0])]
+        row, column = _texel(np.floor(y), height, wrap[1]), _texel(np.floor(x), width, wrap[0])
+        return texels.take(row * width + column, axis=0)
     left, top = np.floor(x - 0.5), np.floor(y - 0.5)
     columns = [_texel(left + step, width, wrap[0]) for step in (0, 1)]
-    rows = [_texel(top + step, height, wrap[1]) for step in (0, 1)]
+    rows = [_texel(top + step, height, wrap[1]) * width for step in (0, 1)]
     right = (x - 0.5 - left).astype(np.float32)[:, None]
     low = (y - 0.5 - top).astype(np.float32)[:, None]
-    above = _mix(image[rows[0], columns[0]], image[rows[0], columns[1]], right)
-    below = _mix(image[rows[1], columns[0]], image[rows[1], columns[1]], right)
+    above, below = (
+        _mix(texels.take(row + columns[0], axis=0), texels.take(row + columns[1], axis=0), right)
+        for row in rows
+    )
     return _mix(above, below, low)
 
 

@@ -5,7 +5,7 @@ Lengths are in the normalized frame (radius 1).
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 
 @dataclass(frozen=True)
@@ -35,6 +35,7 @@ class SamplingConfig:
     texture_step        ... over this distance in UV, a few times as far as UV networks err
     chart_error_count   chart samples again where a wrong chart shows another color ...
     chart_neighbors     ... than as many samples around: those that a network may take it for
+    chart_looks         samples by which it is told how far the nearest of these are, at most
     closing_count       samples on surfaces that close openings ...
     closing_jitter      ... up to this far off them, as a network may put them
     least_count         UV samples that every patch gets, where networks have room for small ones
@@ -62,8 +63,23 @@ class SamplingConfig:
     texture_step: float = 2e-3
     chart_error_count: int = 125_000
     chart_neighbors: int = 16
+    chart_looks: int = 1000
     closing_count: int = 12_000
     closing_jitter: float = 5e-3
     least_count: int = 150
     held_out_count: int = 20_000
     paper_count: int = 1_000_000
+
+    def shared(self, share: float) -> SamplingConfig:
+        """With this share of all samples that sine networks learn from; as many to judge them."""
+        counts = {name: max(1, round(share * getattr(self, name))) for name in _LEARNED_FROM}
+        return replace(self, **counts)
+
+
+_LEARNED_FROM = tuple(
+    f"{kind}_count"
+    for kind in (
+        *("near", "tight", "wide", "cube", "asymmetric", "thin", "near_surface"),
+        *("texture", "chart_error", "closing"),
+    )
+)

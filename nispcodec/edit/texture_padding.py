@@ -14,7 +14,7 @@ from nispcodec.core.arrays import Float64Array
 from nispcodec.core.asset import Texture, TexturedMesh
 from nispcodec.core.extras import require
 from nispcodec.core.raster import coverage, padded
-from nispcodec.core.texture import encode_image, image_bytes
+from nispcodec.core.texture import data_maps, encode_image, image_bytes
 
 ROUNDING = 1e-6
 """UVs that leave the image by less than this count as inside."""
@@ -37,7 +37,9 @@ def _padded(mesh: TexturedMesh, number: int, quality: int) -> Texture:
         return texture
     pixels = image_bytes(texture)
     image = padded(pixels, coverage(uvs, *pixels.shape[:2]))
-    return replace(texture, data=encode_image(image, texture.mime.split("/")[1], quality))
+    is_data = number in data_maps(mesh.materials)
+    data = encode_image(image, texture.mime.split("/")[1], quality, is_data)
+    return replace(texture, data=data)
 
 
 def _uvs(mesh: TexturedMesh, number: int) -> Float64Array:

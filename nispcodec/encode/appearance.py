@@ -6,7 +6,7 @@ from dataclasses import replace
 
 from nispcodec.core.asset import Material, Texture, TexturedMesh
 from nispcodec.core.progress import Listener, Progress
-from nispcodec.core.texture import reencode
+from nispcodec.core.texture import data_maps, reencode
 from nispcodec.edit.texture_padding import with_padded_textures
 from nispcodec.encode.config import EncodeConfig
 
@@ -22,5 +22,5 @@ def appearance(
     if config.pad_textures:
         textures = with_padded_textures(mesh, 100 if config.texture_format else quality)
     if config.texture_format is not None:
-        textures = reencode(textures, config.texture_format, quality)
+        textures = reencode(textures, config.texture_format, quality, data_maps(mesh.materials))
     return mesh.materials, textures

@@ -11,12 +11,14 @@ from typing import TYPE_CHECKING
 from nispcodec.core.errors import NispError
 from nispcodec.dataset.config import SamplingConfig
 from nispcodec.geometry.config import GeometryConfig
+from nispcodec.simplify.config import LadderConfig
 from nispcodec.train.config import TrainConfig
 
 if TYPE_CHECKING:
     from nispcodec.train.prune import Pruning
 
 TEXTURE_FORMATS = ("webp", "avif", "jpeg")
+GEOMETRIES = ("auto", "field", "mesh")
 ENGINES = ("auto", "native", "torch")
 PRESETS = (*TrainConfig().budgets, "paper")
 
@@ -28,6 +30,8 @@ class EncodeConfig:
     preset          one of `PRESETS`
     seed            of everything random: the same input, seed and engine give the
                     same bytes on one kind of processor, with any number of threads
+    geometry        "auto": as networks or as triangles, whichever is smaller at equal errors;
+                    "field": as networks; "mesh": as triangles
     engine          what trains: "native", "torch"; "auto": native wherever that can
     device          "auto", "cpu", "cuda", "cuda:1"; CUDA trains with torch
     threads         cores to use; 0: all
@@ -46,6 +50,7 @@ class EncodeConfig:
 
     preset: str = "balanced"
     seed: int = 0
+    geometry: str = "auto"
     engine: str = "auto"
     device: str = "auto"
     threads: int = 0
@@ -62,6 +67,7 @@ class EncodeConfig:
     def __post_init__(self) -> None:
         _expect_member("preset", self.preset, PRESETS)
         _expect_member("engine", self.engine, ENGINES)
+        _expect_member("geometry", self.geometry, GEOMETRIES)
         if self.texture_format is not None:
             _expect_member("texture format", self.texture_format, TEXTURE_FORMATS)
         _expect_within("texture quality", self.texture_quality, 1, 100)
@@ -71,6 +77,8 @@ class EncodeConfig:
             raise NispError(f"device: expected auto, cpu, cuda or cuda:N, found {self.device!r}")
         if self.engine == "native" and (self.preset == "paper" or self.device.startswith("cuda")):
             raise NispError("engine native, preset paper, device cuda: expected one of them")
+        if self.geometry == "mesh" and (self.preset == "paper" or self.prune):
+            raise NispError("geometry mesh, preset paper, prune: expected one of them")
         targets = [each for each in (self.target_size, self.target_error) if each is not None]
         if len(targets) > 1 or (targets and self.preset == "paper"):
             raise NispError("target size, target error, preset paper: expected one of them")
@@ -99,6 +107,45 @@ def _expect_within(name: str, found: int, low: int, high: int | None) -> None:
 
 
 @dataclass(frozen=True)
+class FormConfig:
+    """When an asset, or a part of it, is held as triangles, and how near these are.
+
+    Distances are means in the normalized frame, UV errors means in the asset's UV.
+
+    growth           of the faces from one candidate to the next
+    least_bytes_per_face   no mesh was coded in fewer
+    coarseness       of roundings of the unsimplified mesh, against a negligible distance
+    surely_smaller   share of the networks' bytes from which down triangles are taken unseen: the
+                     estimate of what a fit will reach may be that far off
+    surely_larger    share of them from which on networks are
+    fitted           share of the probe's error that an SDF of the preset `balanced` is left with
+    most_distance    by preset: a mesh is not made coarser, however small it would be
+    negligible       distances below this are as good as none ...
+    negligible_uv    ... and UV errors below this
+    distance_weight  of the logarithm of the distance against that of the bytes: halving it is worth
+                     a third more bytes
+    uv_weight        the same for UV errors
+    size_trials      face counts tried for a target size: each halves what is left, on a log scale
+    """
+
+    growth: float = 1.8
+    least_bytes_per_face: float = 1.0
+    coarseness: tuple[float, ...] = (4.0, 2.0, 1.0)
+    surely_smaller: float = 0.5
+    surely_larger: float = 1.4
+    fitted: float = 0.35
+    most_distance: Mapping[str, float] = field(
+        default_factory=lambda: {"fast": 1e-3, "balanced": 6e-4, "best": 3e-4}
+    )
+    negligible: float = 1e-4
+    negligible_uv: float = 5e-4
+    distance_weight: float = 0.4
+    uv_weight: float = 0.15
+    size_trials: int = 7
+    ladder: LadderConfig = field(default_factory=LadderConfig)
+
+
+@dataclass(frozen=True)
 class Tuning:
     """Every tuned number of an encode. Tests make them small; users have `EncodeConfig`.
 
@@ -111,9 +158,15 @@ class Tuning:
     geometry: GeometryConfig = field(default_factory=GeometryConfig)
     sampling: SamplingConfig = field(default_factory=SamplingConfig)
     training: TrainConfig = field(default_factory=TrainConfig)
+    forms: FormConfig = field(default_factory=FormConfig)
     negligible: float = 1e-7
     notable_open: float = 0.02
 
     def geometry_of(self, preset: str) -> GeometryConfig:
         """The preset `paper` knows neither cut nor merged charts."""
         return replace(self.geometry, merging=None) if preset == "paper" else self.geometry
+
+    def sampling_of(self, preset: str) -> SamplingConfig:
+        """The share of the samples that the preset has time to look at."""
+        budget = self.training.budgets.get(preset)
+        return self.sampling.shared(budget.samples) if budget else self.sampling

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 
+from nispcodec.core.cores import cores
 from nispcodec.core.document import Document
 from nispcodec.core.network import Network
 from nispcodec.core.progress import Listener
@@ -18,7 +19,6 @@ from nispcodec.encode.targets import (
 )
 from nispcodec.geometry.analysis import Analysis
 from nispcodec.geometry.triangles import area
-from nispcodec.infer.parallel import cores
 from nispcodec.train.backend.protocol import Engine
 from nispcodec.train.config import TrainConfig
 from nispcodec.train.task import Task
@@ -33,13 +33,15 @@ def fit(
     training: TrainConfig,
     engine: Engine,
     document: Callable[[Mapping[str, Network]], Document],
+    wanted: Callable[[float, float], bool],
     progress: Listener,
 ) -> Mapping[str, Network]:
     """The networks: the published ones, or sine networks as large as the preset or target asks.
 
+    None at all where a preset's, whose bytes and probe error are told to `wanted`, are not.
     Raises FitError when a network does not converge.
     """
-    threads = config.threads or cores()
+    threads = cores()
 
     def run(tasks: list[Task], listen: Listener) -> dict[str, Network]:
         return fit_networks(tasks, config.seed, engine, threads, listen)
@@ -55,7 +57,7 @@ def fit(
         return fit_to_error(context, config.target_error)
     if config.target_size is not None:
         return fit_to_size(context, config.target_size, document)
-    return fit_with_preset(context)
+    return fit_with_preset(context, wanted)
 
 
 def asset_problem(analysis: Analysis, sets: TrainingSets, training: TrainConfig) -> AssetProblem:

@@ -6,18 +6,22 @@ from collections.abc import Mapping
 from dataclasses import replace
 
 from nispcodec.core.asset import TexturedMesh
-from nispcodec.core.document import Document
+from nispcodec.core.document import Document, Field
+from nispcodec.core.mesh_part import MeshPart
 from nispcodec.core.network import Network
 from nispcodec.core.progress import Listener, Progress, silent
 from nispcodec.dataset.recipes import paper_training_sets, training_sets
 from nispcodec.dataset.sampler import Sampler
 from nispcodec.encode.appearance import appearance
+from nispcodec.encode.choice import Choice
 from nispcodec.encode.config import EncodeConfig, Tuning
 from nispcodec.encode.fitting import fit
+from nispcodec.encode.mesh_form import MeshForm
 from nispcodec.encode.report import measured
 from nispcodec.encode.single_precision import short_frame, short_uv_map
 from nispcodec.encode.stages import with_overall
 from nispcodec.geometry.analysis import Analysis, analyze
+from nispcodec.infer.parallel import on_cores
 from nispcodec.model import NispModel
 from nispcodec.train.backend.choice import choose_engine
 
@@ -34,7 +38,14 @@ def encode(
     network does not converge, and, before the work, for a device or an engine that is not there,
     NispError for a target that cannot be met and for a package that is missing.
     """
-    config, tuning = config or EncodeConfig(), tuning or Tuning()
+    config = config or EncodeConfig()
+    with on_cores(config.threads):
+        return _encoded(mesh, config, progress, tuning or Tuning())
+
+
+def _encoded(
+    mesh: TexturedMesh, config: EncodeConfig, progress: Listener, tuning: Tuning
+) -> NispModel:
     progress = with_overall(progress, config, tuning.training)
     published = config.preset == "paper"
     engine = choose_engine(config.engine, config.device, published, progress)
@@ -43,27 +54,40 @@ def encode(
     analysis = analyze(mesh, config.seed, tuning.geometry_of(config.preset))
     for warning in analysis.solid.warnings:
         progress(Progress(stage="charts and hidden walls", warning=f"{mesh.name}: {warning}"))
+    frame = short_frame(analysis.frame, tuning.negligible)
+    form = MeshForm(analysis, config.seed, tuning.forms, progress)
+    choice = Choice(form, config, tuning.forms)
+
+    def of_networks(networks: Mapping[str, Network]) -> Document:
+        return Document(frame, materials, textures, _field(networks, analysis, tuning))
+
+    def of_triangles(part: MeshPart) -> Document:
+        return Document(frame, materials, textures, meshes=(part,))
+
+    if config.geometry == "mesh":
+        chosen = choice.triangles(of_triangles)
+        return NispModel(replace(chosen.document, info=measured(chosen, analysis, config)))
     progress(Progress(stage="samples"))
-    sampler = Sampler(analysis, config.seed, tuning.sampling)
+    sampler = Sampler(analysis, config.seed, tuning.sampling_of(config.preset))
     sets = (paper_training_sets if published else training_sets)(sampler)
-
-    def document(networks: Mapping[str, Network]) -> Document:
-        return Document(
-            frame=short_frame(analysis.frame, tuning.negligible),
-            charts=short_uv_map(analysis.table, tuning.negligible),
-            materials=materials,
-            textures=textures,
-            sdf=networks["sdf"],
-            chart=networks.get("chart"),
-            uv=networks.get("uv"),
-            half_thickness=_half_thickness(analysis, tuning),
-        )
-
-    progress(Progress(stage="fit"))
-    done = document(fit(analysis, sets, config, tuning.training, engine, document, progress))
-    return NispModel(replace(done, info=measured(done, analysis, sets, config, engine.name)))
+    networks = fit(
+        analysis, sets, config, tuning.training, engine, of_networks, choice.wants_field, progress
+    )
+    if networks:
+        fitted = of_networks(networks)
+        chosen = choice.after_fit(fitted, form.errors(fitted))
+    else:
+        chosen = choice.triangles(of_triangles)
+    info = measured(chosen, analysis, config, engine.name, sets)
+    return NispModel(replace(chosen.document, info=info))
 
 
-def _half_thickness(analysis: Analysis, tuning: Tuning) -> float:
+def _field(networks: Mapping[str, Network], analysis: Analysis, tuning: Tuning) -> Field:
     notable = analysis.solid.open_surface_share >= tuning.notable_open
-    return analysis.solid.half_thickness if notable else 0.0
+    return Field(
+        charts=short_uv_map(analysis.table, tuning.negligible),
+        sdf=networks["sdf"],
+        chart=networks.get("chart"),
+        uv=networks.get("uv"),
+        half_thickness=analysis.solid.half_thickness if notable else 0.0,
+    )

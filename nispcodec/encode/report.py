@@ -1,43 +1,52 @@
-"""The report of an encode: held-out errors of the networks as stored."""
+"""The report of an encode: what the decoded surface is off, in a few numbers."""
 
 from __future__ import annotations
 
 import numpy as np
 
-from nispcodec.core.document import Document
+from nispcodec.core.document import Field
 from nispcodec.dataset.recipes import TrainingSets
+from nispcodec.encode.choice import Chosen
 from nispcodec.encode.config import EncodeConfig
 from nispcodec.geometry.analysis import Analysis
-from nispcodec.model import NispModel
+from nispcodec.infer.field import FieldQueries
 
 
 def measured(
-    document: Document, analysis: Analysis, sets: TrainingSets, config: EncodeConfig, engine: str
+    chosen: Chosen,
+    analysis: Analysis,
+    config: EncodeConfig,
+    engine: str = "",
+    sets: TrainingSets | None = None,
 ) -> dict[str, str | int | float | bool]:
-    """By the decoder's own evaluation: mean distance, chart accuracy, UV errors; shares of area.
+    """How the file was made; mean distance, chart accuracy, UV errors; shares of area.
 
-    Distances are in the normalized frame, UV errors in the asset's UV.
+    Distances are in the normalized frame, UV errors in the asset's UV; both are means, or medians,
+    of the larger direction between the original and what decodes. `engine` is what trained
+    networks, and `sets` what their charts are judged by.
     """
-    model = NispModel(document)
-    near, surface = sets.held_out_distance, sets.held_out_surface
-    distance = np.abs(model.sdf(near.points, frame="normalized") - near.sdf)
-    found: dict[str, str | int | float | bool] = {
-        "preset": config.preset,
-        "seed": config.seed,
-        "engine": engine,
-        "hidden_share": _short(analysis.solid.hidden_share),
-        "open_surface_share": _short(analysis.solid.open_surface_share),
-        "distance_error": _short(distance.mean()),
-    }
-    charts = model.charts(surface.points, frame="normalized")
-    if document.chart is not None:
-        found["chart_accuracy"] = _short((charts == surface.chart).mean())
-    if document.uv is not None:
-        wanted = surface.uv * document.charts.uv_scale + document.charts.uv_offset
-        off = np.linalg.norm(model.uv(surface.points, "normalized", charts) - wanted, axis=1)
-        found["uv_error_median"] = _short(np.median(off))
-        found["uv_error_mean"] = _short(off.mean())
+    solid, errors = analysis.solid, chosen.errors
+    found: dict[str, str | int | float | bool] = {"preset": config.preset, "seed": config.seed}
+    if engine and chosen.document.field:
+        found["engine"] = engine
+    found["hidden_share"] = _short(solid.hidden_share)
+    found["open_surface_share"] = _short(solid.open_surface_share)
+    found["distance_error"] = _short(errors.distance)
+    field = chosen.document.field
+    if field and field.chart and sets:
+        found["chart_accuracy"] = _short(_chart_accuracy(field, sets))
+    if chosen.document.chart_has_uv.any():
+        found["uv_error_median"] = _short(errors.uv_median)
+        found["uv_error_mean"] = _short(errors.uv)
+    if chosen.other_bytes:
+        found["other_form_bytes"] = _short(chosen.other_bytes)
     return found
+
+
+def _chart_accuracy(field: Field, sets: TrainingSets) -> float:
+    """Share of held-out surface points whose chart the field knows."""
+    surface = sets.held_out_surface
+    return float((FieldQueries(field).charts(surface.points) == surface.chart).mean())
 
 
 def _short(value: float | np.floating) -> float:

@@ -28,9 +28,10 @@ class StageSeconds:
             "charts and hidden walls": 0.7,
             "samples": 2.0,
             "probe how much there is to learn": 1.0,
+            "triangles": 1.0,
         }
     )
-    after: float = 0.3
+    after: float = 2.0
     steps: float = 2000.0
     paper: float = 1200.0
     rounding: float = 0.93

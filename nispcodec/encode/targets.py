@@ -77,10 +77,16 @@ def pruned(tasks: list[Task], prunings: Mapping[str, Pruning]) -> list[Task]:
     return [replace(task, pruning=prunings.get(task.name)) for task in tasks]
 
 
-def fit_with_preset(context: FitContext) -> Networks:
-    """Networks as large as the preset and the asset suggest."""
+def fit_with_preset(context: FitContext, wanted: Callable[[float, float], bool]) -> Networks:
+    """Networks as large as the preset and the asset suggest; none if they are not wanted.
+
+    `wanted` is told their bytes, about, and the held-out error of the SDF's probe.
+    """
     errors = context.probe()
     hidden = context.hidden_layers(errors, context.budget.scale)
+    problem = context.problem
+    if not wanted(bytes_of(problem.specs(hidden), problem.config.sizing), errors["sdf"]):
+        return {}
     return context.fit(context.tasks(hidden, errors, {}), context.listen)
 
 

@@ -18,6 +18,8 @@ class ResolutionConfig:
                      as thin
     faces            triangles that thin walls may cost
     faces_per_block  of the surface that `least` cells are looked into
+    bytes_per_face  of memory that extraction takes at its peak: 260 to 300 were seen, and the count
+                    of faces may be low by a quarter
     highest          cells of anything nobody asked for: memory grows with the square
     newton_steps     that bring a point near the surface onto it, before walls are measured
     on_surface       a field smaller than this is at the surface
@@ -28,6 +30,7 @@ class ResolutionConfig:
     thin_share: float = 0.02
     faces: int = 500_000
     faces_per_block: float = 6.6
+    bytes_per_face: int = 400
     highest: int = 2048
     newton_steps: int = 3
     on_surface: float = 1e-3
@@ -109,6 +112,7 @@ class SimplifyConfig:
                     quadrics are 0 and collapses get stuck
     shrinkage       triangles that are left after each step of a search for the fewest
     face_fittings   tries to meet a number of faces, seams included
+    stuck           times as many faces as aimed at: then it is of no use to aim lower
     retreat         how far the copies of a vertex draw back to their own faces, as a share of
                     these faces' size
     """
@@ -117,6 +121,7 @@ class SimplifyConfig:
     roughness: float = 1e-3
     shrinkage: float = 0.7
     face_fittings: int = 4
+    stuck: float = 2.0
     retreat: float = 1e-3
 
 

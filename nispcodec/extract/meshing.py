@@ -8,7 +8,7 @@ import numpy as np
 
 from nispcodec.core.arrays import Int32Array
 from nispcodec.core.asset import TexturedMesh
-from nispcodec.core.document import Document
+from nispcodec.core.document import Document, Field
 from nispcodec.core.network import Network
 from nispcodec.extract.components import (
     ExtractionReport,
@@ -19,11 +19,12 @@ from nispcodec.extract.components import (
 from nispcodec.extract.config import ExtractConfig, ResolutionConfig
 from nispcodec.extract.grid import CUBE
 from nispcodec.extract.isosurface import Surface, extract, near_surface
+from nispcodec.extract.mesh_parts import joined
 from nispcodec.extract.seams import cut_along_seams
 from nispcodec.extract.simplify import deviation, simplest, simplified
 from nispcodec.extract.thin_walls import thin_share
 from nispcodec.extract.vertex_charts import vertex_charts
-from nispcodec.infer.texture_coordinates import asset_uv
+from nispcodec.infer.field import FieldQueries
 
 
 def textured_mesh(
@@ -41,15 +42,18 @@ def textured_mesh(
     that the mesh may have, seams included; error: as few triangles as keep the mean distance to the
     field's surface below it (normalized frame); keep_spurious: do not drop noise of the field.
     """
-    surface, report = _surface(document, resolution, error, keep_spurious, config)
+    if document.field is None:
+        return joined(document, None), ExtractionReport(0, 0, 0, 0)
+    field = document.field
+    surface, report = _surface(field, resolution, error, keep_spurious, config)
     if error is not None:
-        surface = simplest(document.sdf, surface, error, config.simplify)
+        surface = simplest(field.sdf, surface, error, config.simplify)
     if faces is None:
-        cut, charts = _cut(document, surface, config)
+        cut, charts = _cut(field, surface, config)
     else:
-        cut, charts = _fitted(document, surface, faces, config)
-    mesh = _dressed(document, *_opened(document, cut, charts, config))
-    return replace(mesh, warnings=report.warnings), report
+        cut, charts = _fitted(field, surface, faces, config)
+    own = _dressed(document, field, *_opened(field, cut, charts, config))
+    return replace(joined(document, own), warnings=(*report.warnings, *_missed(cut, faces))), report
 
 
 def default_resolution(
@@ -65,16 +69,24 @@ def default_resolution(
     return min(max(cells, sheets), config.highest)
 
 
+def expected_faces(
+    network: Network, resolution: int, config: ResolutionConfig = ResolutionConfig()
+) -> int:
+    """About how many triangles a grid of so many cells along its edge gives."""
+    points, _ = near_surface(network, config.least)
+    return int(len(points) * config.faces_per_block * (resolution / config.least) ** 2)
+
+
 def _surface(
-    document: Document,
+    field: Field,
     resolution: int | None,
     error: float | None,
     keep_spurious: bool,
     config: ExtractConfig,
 ) -> tuple[Surface, ExtractionReport]:
     """The surface at the resolution asked for, or at one that is fine enough for `error`."""
-    sdf, limits = document.sdf, config.resolution
-    cells = resolution or default_resolution(sdf, document.half_thickness, limits)
+    sdf, limits = field.sdf, config.resolution
+    cells = resolution or default_resolution(sdf, field.half_thickness, limits)
     while True:
         found = extract(sdf, cells, config.isosurface)
         surface, report = without_noise(sdf, found, keep_spurious, config.components)
@@ -84,37 +96,49 @@ def _surface(
         cells *= 2
 
 
-def _cut(document: Document, surface: Surface, config: ExtractConfig) -> tuple[Surface, Int32Array]:
+def _cut(field: Field, surface: Surface, config: ExtractConfig) -> tuple[Surface, Int32Array]:
     """The surface with one chart a face, and those charts (m,)."""
-    if document.chart is None:
+    if field.chart is None:
         return surface, np.zeros(len(surface.faces), np.int32)
-    charts = vertex_charts(document.chart, surface, config.seams)
-    return cut_along_seams(document.sdf, document.chart, surface, charts, config.seams)
+    charts = vertex_charts(field.chart, surface, config.seams)
+    return cut_along_seams(field.sdf, field.chart, surface, charts, config.seams)
 
 
 def _fitted(
-    document: Document, surface: Surface, faces: int, config: ExtractConfig
+    field: Field, surface: Surface, faces: int, config: ExtractConfig
 ) -> tuple[Surface, Int32Array]:
     """The surface simplified until it has at most `faces` triangles after being cut."""
     target = faces
     for _ in range(config.simplify.face_fittings):
-        cut, charts = _cut(document, simplified(surface, target, config.simplify), config)
-        if len(cut.faces) <= faces:
+        fewer = simplified(surface, target, config.simplify)
+        cut, charts = _cut(field, fewer, config)
+        # Far from its target it is stuck: asked for less it takes as long, and gives the same.
+        if len(cut.faces) <= faces or len(fewer.faces) > config.simplify.stuck * target:
             break
         target = int(0.99 * target * faces / len(cut.faces))
     return cut, charts
 
 
+def _missed(surface: Surface, faces: int | None) -> tuple[str, ...]:
+    """A warning where there are more faces than asked for."""
+    if faces is None or len(surface.faces) <= faces:
+        return ()
+    return (
+        f"expected at most {faces:,} faces, found {len(surface.faces):,}: the surface has too many "
+        f"pieces and seams for fewer",
+    )
+
+
 def _opened(
-    document: Document, surface: Surface, charts: Int32Array, config: ExtractConfig
+    field: Field, surface: Surface, charts: Int32Array, config: ExtractConfig
 ) -> tuple[Surface, Int32Array]:
     """Without the closing surfaces that the field draws across the asset's openings.
 
     Islands in them, tiny pieces of another chart, go as well: the chart network was wrong there.
     """
-    if not document.charts.openings:
+    if not field.charts.openings:
         return surface, charts
-    kept = charts != len(document.charts) - 1
+    kept = charts != len(field.charts) - 1
     used, corners = np.unique(surface.faces[kept], return_inverse=True)
     faces = corners.reshape(-1, 3).astype(np.int32)
     opened = Surface(surface.positions[used], faces, surface.cell)
@@ -127,13 +151,16 @@ def _opened(
     return without(opened, islands, labels), charts[kept][left]
 
 
-def _dressed(document: Document, surface: Surface, charts: Int32Array) -> TexturedMesh:
+def _dressed(
+    document: Document, field: Field, surface: Surface, charts: Int32Array
+) -> TexturedMesh:
     """The surface with UVs, doubled at seams: one UV for each vertex and chart that meet."""
-    table = document.charts
+    table = field.charts
     corners = np.repeat(charts[:, None], 3, axis=1)
     keys = surface.faces.astype(np.int64) << 32 | corners
     pairs, inverse = np.unique(keys[table.has_uv[charts]], return_inverse=True)
-    uvs = asset_uv(document, surface.positions[pairs >> 32], (pairs & 0xFFFFFFFF).astype(np.int32))
+    own = (pairs & 0xFFFFFFFF).astype(np.int32)
+    uvs = FieldQueries(field).uv(surface.positions[pairs >> 32], own)
     uv_faces = np.full(surface.faces.shape, -1, np.int32)
     uv_faces[table.has_uv[charts]] = inverse.reshape(-1, 3)
     return TexturedMesh(

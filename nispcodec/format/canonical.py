@@ -73,7 +73,7 @@ class _Encoder:
         if isinstance(value, dict):
             return self._map(value, depth)
         if isinstance(value, (list, tuple)):
-            self._limit("array length", len(value), MAX_ITEMS)
+            self._limit("array_length", len(value), MAX_ITEMS)
             items = b"".join(self.encode(item, depth + 1) for item in value)
             return bytes(msgpack.Packer().pack_array_header(len(value))) + items
         if isinstance(value, float):
@@ -81,7 +81,7 @@ class _Encoder:
         return self._scalar(value)
 
     def _map(self, value: dict[Any, Any], depth: int) -> bytes:
-        self._limit("map length", len(value), MAX_ITEMS)
+        self._limit("map_length", len(value), MAX_ITEMS)
         pairs = sorted(
             (self.encode(key, depth + 1), self.encode(item, depth + 1))
             for key, item in value.items()
@@ -105,7 +105,7 @@ class _Encoder:
             expected = "map, array, text, bytes, number or bool"
             raise FormatError(self._section, "type", expected, type(value).__name__)
         if isinstance(value, str):
-            self._limit("text length", len(value.encode(errors="replace")), MAX_TEXT)
+            self._limit("text_length", len(value.encode(errors="replace")), MAX_TEXT)
         try:
             return bytes(msgpack.packb(value))
         except (OverflowError, UnicodeEncodeError) as error:

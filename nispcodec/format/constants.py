@@ -16,10 +16,11 @@ ENTRY_SIZE = 21
 CRITICAL = 1
 PACKED = 2
 
+MESH = "MESH"
 META = "META"
 NETS = "NETS"
 TXTR = "TXTR"
-SECTIONS = (META, NETS, TXTR)
+SECTIONS = (MESH, META, NETS, TXTR)
 
 NETWORKS = ("sdf", "chart", "uv")
 MEASURES = (
@@ -31,6 +32,7 @@ MEASURES = (
     "chart_accuracy",
     "uv_error_median",
     "uv_error_mean",
+    "other_form_bytes",
 )
 PRESETS = ("balanced", "paper", "fast", "best")
 STEPS = ("byte", "float16", "float32", "same", "rows1", "rows2", "rows3")
@@ -50,3 +52,6 @@ MAX_MEMORY = 96 * 2**20
 MAX_SYMBOL = 2**23 - 1
 MAX_CELLS = 256
 MAX_JOINED = 3
+MAX_MESH_FACES = 2**18
+MESH_FACES_PER_BYTE = 64
+MAX_MESH_PLACEMENTS = 4096

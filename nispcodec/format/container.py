@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import re
 import struct
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from zlib import crc32
 
 import zstandard
 
+from nispcodec.core.document import StoredSection
 from nispcodec.core.errors import FormatError
 from nispcodec.format.constants import (
     CRITICAL,
@@ -49,30 +50,29 @@ class Entry:
         return len(self.payload)
 
 
-def write_container(sections: Iterable[tuple[str, bool, bytes]]) -> bytes:
+def write_container(
+    sections: Iterable[tuple[str, bool, bytes]], stored: Mapping[str, StoredSection]
+) -> bytes:
     """(code, critical, content) of every section, in any order -> the bytes of the file.
 
-    Raises FormatError for a code that is not four of A-Z and 0-9, two equal codes, and beyond the
-    caps.
+    `stored` are ancillary sections, by code, whose payloads are written as they are. Raises
+    FormatError for a code that is not four of A-Z and 0-9, two equal codes, and beyond the caps.
     """
-    rows = sorted(sections)
+    rows = sorted(_packed(sections, stored), key=lambda row: row[0])
     if len(rows) > MAX_SECTIONS:
-        raise FormatError("header", "section count", f"1 to {MAX_SECTIONS}", len(rows))
+        raise FormatError("header", "section_count", f"1 to {MAX_SECTIONS}", len(rows))
     _check_order([_check_code(code.encode(errors="replace")) for code, _, _ in rows])
     offset = HEADER_SIZE + ENTRY_SIZE * len(rows)
-    budget = MAX_UNPACKED
-    table, payloads = b"", []
-    for code, critical, content in rows:
-        packing, payload = pack_content(content, budget)
-        budget -= len(content) if packing == "zstd" else 0
-        numbers = (offset, len(payload), len(content), crc32(payload))
-        flags = CRITICAL * critical | PACKED * (packing == "zstd")
-        table += _ENTRY.pack(code.encode(), flags, *numbers)
-        payloads.append(payload)
+    table = b""
+    for code, critical, (payload, decoded) in rows:
+        flags = CRITICAL * critical | PACKED * (decoded is not None)
+        length = len(payload) if decoded is None else decoded
+        table += _ENTRY.pack(code.encode(), flags, offset, len(payload), length, crc32(payload))
         offset += len(payload)
         if offset > MAX_FILE:
-            raise FormatError(code, "file length", f"at most {MAX_FILE} bytes", offset)
+            raise FormatError(code, "file_length", f"at most {MAX_FILE} bytes", offset)
     start = _HEADER.pack(SIGNATURE, MAJOR, MINOR, len(rows), 0)[:12]
+    payloads = [payload for _, _, (payload, _) in rows]
     return b"".join([start, struct.pack("<I", crc32(start + table)), table, *payloads])
 
 
@@ -89,11 +89,11 @@ def read_container(data: bytes) -> list[Entry]:
         entries.append(_read_entry(data, row, end))
         end += entries[-1].stored_length
     if end != len(data):
-        raise FormatError("header", "file length", f"{end} bytes", len(data))
+        raise FormatError("header", "file_length", f"{end} bytes", len(data))
     _check_order([entry.code for entry in entries])
     unpacked = sum(entry.decoded_length for entry in entries if entry.packing == "zstd")
     if unpacked > MAX_UNPACKED:
-        raise FormatError("header", "decoded length", f"{MAX_UNPACKED} in all", unpacked)
+        raise FormatError("header", "decoded_length", f"{MAX_UNPACKED} in all", unpacked)
     return entries
 
 
@@ -107,14 +107,14 @@ def content(entry: Entry) -> memoryview:
     try:
         declared = zstandard.get_frame_parameters(entry.payload).content_size
         if declared != entry.decoded_length:
-            raise FormatError(entry.code, "zstd content size", entry.decoded_length, declared)
+            raise FormatError(entry.code, "content_size", entry.decoded_length, declared)
         unpacked = zstandard.ZstdDecompressor().decompress(
             entry.payload, max_output_size=entry.decoded_length, allow_extra_data=False
         )
     except zstandard.ZstdError as error:
         raise FormatError(entry.code, "payload", "one zstd frame", error) from error
     if len(unpacked) != entry.decoded_length:
-        raise FormatError(entry.code, "decoded length", entry.decoded_length, len(unpacked))
+        raise FormatError(entry.code, "decoded_length", entry.decoded_length, len(unpacked))
     return memoryview(unpacked)
 
 
@@ -127,20 +127,33 @@ def pack_content(content: bytes, budget: int) -> tuple[str, bytes]:
     return "raw", content
 
 
+def _packed(
+    sections: Iterable[tuple[str, bool, bytes]], stored: Mapping[str, StoredSection]
+) -> Iterator[tuple[str, bool, tuple[bytes, int | None]]]:
+    """Code, whether critical, and payload with decoded length, None if raw, of every section."""
+    budget = MAX_UNPACKED - sum(each.decoded_length or 0 for each in stored.values())
+    for code, critical, content in sorted(sections):
+        packing, payload = pack_content(content, budget)
+        budget -= len(content) if packing == "zstd" else 0
+        yield code, critical, (payload, len(content) if packing == "zstd" else None)
+    for code, each in stored.items():
+        yield code, False, (each.payload, each.decoded_length)
+
+
 def _read_header(data: bytes) -> int:
     if not HEADER_SIZE <= len(data) <= MAX_FILE:
         expected = f"{HEADER_SIZE} to {MAX_FILE} bytes"
-        raise FormatError("header", "file length", expected, len(data))
+        raise FormatError("header", "file_length", expected, len(data))
     signature, major, _minor, count, checksum = _HEADER.unpack_from(data)
     if signature != SIGNATURE:
         raise FormatError("header", "signature", SIGNATURE, signature)
     if major != MAJOR:
-        raise FormatError("header", "major version", MAJOR, major)
+        raise FormatError("header", "major_version", MAJOR, major)
     if not 1 <= count <= MAX_SECTIONS:
-        raise FormatError("header", "section count", f"1 to {MAX_SECTIONS}", count)
+        raise FormatError("header", "section_count", f"1 to {MAX_SECTIONS}", count)
     end = HEADER_SIZE + ENTRY_SIZE * count
     if len(data) < end:
-        raise FormatError("header", "file length", f"at least {end} bytes", len(data))
+        raise FormatError("header", "file_length", f"at least {end} bytes", len(data))
     found = crc32(data[:12] + data[HEADER_SIZE:end])
     if found != checksum:
         raise FormatError("header", "checksum", f"{found:#010x}", f"{checksum:#010x}")
@@ -158,11 +171,11 @@ def _read_entry(data: bytes, row: int, start: int) -> Entry:
     if offset != start:
         raise FormatError(code, "offset", start, offset)
     if stored > len(data) - start:
-        raise FormatError(code, "stored length", f"at most {len(data) - start}", stored)
+        raise FormatError(code, "stored_length", f"at most {len(data) - start}", stored)
     if not packed and decoded != stored:
-        raise FormatError(code, "decoded length", stored, decoded)
+        raise FormatError(code, "decoded_length", stored, decoded)
     if packed and decoded <= stored:
-        raise FormatError(code, "decoded length", f"more than the {stored} stored", decoded)
+        raise FormatError(code, "decoded_length", f"more than the {stored} stored", decoded)
     payload = memoryview(data)[start : start + stored]
     if crc32(payload) != checksum:
         raise FormatError(code, "checksum", f"{crc32(payload):#010x}", f"{checksum:#010x}")
@@ -172,10 +185,10 @@ def _read_entry(data: bytes, row: int, start: int) -> Entry:
 
 def _check_code(code: bytes) -> str:
     if not _CODE.fullmatch(code):
-        raise FormatError("header", "section code", "four of A-Z and 0-9", code)
+        raise FormatError("header", "section_code", "four of A-Z and 0-9", code)
     return code.decode()
 
 
 def _check_order(codes: list[str]) -> None:
     if codes != sorted(set(codes)):
-        raise FormatError("header", "section order", sorted(set(codes)), codes)
+        raise FormatError("header", "section_order", sorted(set(codes)), codes)

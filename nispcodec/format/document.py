@@ -6,10 +6,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from nispcodec.core.asset import Texture
-from nispcodec.core.document import Document
+from nispcodec.core.document import Document, Field, StoredSection
 from nispcodec.core.errors import FormatError
-from nispcodec.format import metadata, weights
-from nispcodec.format.constants import META, NETS, SECTIONS, TXTR
+from nispcodec.format import mesh, metadata, weights
+from nispcodec.format.constants import MESH, META, NETS, SECTIONS, TXTR
 from nispcodec.format.container import Entry, content, read_container, write_container
 from nispcodec.format.record import located
 
@@ -41,12 +41,14 @@ def pack(document: Document, coding: str | None = None) -> bytes:
         raise FormatError(known[0], "extra", "a code unknown to this version", known[0])
     sections = [
         (META, True, metadata.encode(document)),
-        (NETS, True, weights.encode(document.networks, coding)),
-        *((code, False, data) for code, data in document.extra.items()),
     ]
+    if document.field:
+        sections.append((NETS, True, weights.encode(document.networks, coding)))
+    if document.meshes:
+        sections.append((MESH, True, mesh.encode(document.meshes)))
     if document.textures:
         sections.append((TXTR, True, b"".join(texture.data for texture in document.textures)))
-    return write_container(sections)
+    return write_container(sections, document.extra)
 
 
 def unpack(data: bytes) -> Document:
@@ -80,23 +82,41 @@ def _parse(data: bytes) -> tuple[Document, dict[str, Entry], dict[str, int]]:
     """Document, table entries by code, bytes of each network in NETS."""
     entries = _by_code(read_container(data))
     meta = metadata.decode(_required(entries, META))
-    networks, lengths = weights.decode(meta.specs, _required(entries, NETS))
+    field, lengths = _read_field(meta, entries)
+    meshes = mesh.decode(_required(entries, MESH)) if MESH in entries else ()
     textures = _read_textures(meta, entries)
     unknown = {code: entry for code, entry in entries.items() if code not in SECTIONS}
-    with located(META, "document"):
+    with located(META, ""):
         document = Document(
             frame=meta.frame,
-            charts=meta.charts,
             materials=meta.materials,
             textures=textures,
+            field=field,
+            meshes=meshes,
+            info=meta.info,
+            extra={code: _kept(entry) for code, entry in unknown.items()},
+        )
+    return document, entries, lengths
+
+
+def _read_field(
+    meta: metadata.Metadata, entries: Mapping[str, Entry]
+) -> tuple[Field | None, dict[str, int]]:
+    """The field, if META has networks, and the bytes of each network in NETS."""
+    if meta.charts is None:
+        if NETS in entries:
+            raise FormatError(NETS, "section", "absent without networks", "present")
+        return None, {}
+    networks, lengths = weights.decode(meta.specs, _required(entries, NETS))
+    with located(META, "document"):
+        field = Field(
+            charts=meta.charts,
             sdf=networks["sdf"],
             chart=networks.get("chart"),
             uv=networks.get("uv"),
             half_thickness=meta.half_thickness,
-            info=meta.info,
-            extra={code: bytes(content(entry)) for code, entry in unknown.items()},
         )
-    return document, entries, lengths
+    return field, lengths
 
 
 def _by_code(entries: list[Entry]) -> dict[str, Entry]:
@@ -104,7 +124,7 @@ def _by_code(entries: list[Entry]) -> dict[str, Entry]:
         known = entry.code in SECTIONS
         if entry.critical and not known:
             expected = f"a critical section of {', '.join(SECTIONS)}"
-            raise FormatError(entry.code, "section code", expected, entry.code)
+            raise FormatError(entry.code, "section_code", expected, entry.code)
         if known and not entry.critical:
             raise FormatError(entry.code, "flags", "critical", "ancillary")
     return {entry.code: entry for entry in entries}
@@ -116,13 +136,18 @@ def _required(entries: Mapping[str, Entry], code: str) -> memoryview:
     return content(entries[code])
 
 
+def _kept(entry: Entry) -> StoredSection:
+    length = entry.decoded_length if entry.packing == "zstd" else None
+    return StoredSection(bytes(entry.payload), length)
+
+
 def _read_textures(meta: metadata.Metadata, entries: Mapping[str, Entry]) -> tuple[Texture, ...]:
     if not meta.textures and TXTR in entries:
         raise FormatError(TXTR, "section", "absent without textures", "present")
     data = _required(entries, TXTR) if meta.textures else memoryview(b"")
     others = sum(length for _, _, length in meta.textures if length is not None)
-    if others > len(data):
-        raise FormatError(TXTR, "length", f"at least {others} bytes", len(data))
+    if meta.textures and others >= len(data):
+        raise FormatError(TXTR, "length", f"more than {others} bytes", len(data))
     textures: list[Texture] = []
     start = 0
     for name, mime, length in meta.textures:

@@ -76,7 +76,8 @@ def decode_material(index: int, value: Any) -> Material:
 def encode_textures(textures: Sequence[Texture]) -> list[dict[int, Any]]:
     """The map in META of every texture; the bytes go to TXTR, whose end is that of the last.
 
-    Raises FormatError for a name that is no bare file name with an ending, or an unknown type.
+    Raises FormatError for a name that is no bare file name with an ending, an unknown type, and an
+    image without bytes.
     """
     fields = [_encode_texture(texture) for texture in textures]
     for each, texture in zip(fields[:-1], textures, strict=False):
@@ -99,6 +100,8 @@ def decode_textures(values: list[Any]) -> tuple[tuple[str, str, int | None], ...
 def _encode_texture(texture: Texture) -> dict[int, Any]:
     path = f"textures.{texture.name}"
     check_file_name(META, f"{path}.name", texture.name)
+    if not texture.data:
+        raise FormatError(META, f"{path}.length", "at least 1 byte", 0)
     if "." not in texture.name:
         raise FormatError(META, f"{path}.name", "a file name with an ending", texture.name)
     mime = number(META, f"{path}.mime", texture.mime, MIME_TYPES)
@@ -112,7 +115,7 @@ def _decode_texture(record: Record, last: bool) -> tuple[str, str, int | None]:
     check_file_name(META, f"{record.path}.name", stored)
     if _stored_name(name, mime) != stored:
         raise record.error("name", f"no ending, being {_ENDING[mime]}", repr(stored))
-    length = None if last else record.integer(3, "length", 0, MAX_FILE)
+    length = None if last else record.integer(3, "length", 1, MAX_FILE)
     record.finish()
     return name, mime, length
 

@@ -14,10 +14,16 @@ import numpy as np
 
 from nispcodec.core.errors import FormatError
 from nispcodec.format.constants import MEASURES, META, PRESETS
+from nispcodec.format.record import check_text
 
 Scalar = str | int | float | bool
 _PLAIN = "text, a number or a bool"
-_PRESET, _COUNTED = MEASURES[0], MEASURES[2:]
+_PRESET, _SEED, _COUNTED = MEASURES[0], MEASURES[1], MEASURES[2:]
+_KINDS: dict[str, tuple[tuple[type, ...], str]] = {
+    _PRESET: ((str, int), "text, or a preset's number"),
+    _SEED: ((int,), "an integer"),
+    **dict.fromkeys(_COUNTED, ((int, float), "a number")),
+}
 _MILLION = 1_000_000
 _MOST = 1000.0
 
@@ -25,11 +31,14 @@ _MOST = 1000.0
 def encode(info: Mapping[str, Scalar]) -> dict[int | str, Scalar]:
     """A document's `info` -> its map on disk.
 
-    Raises FormatError for a value that is no text, number or bool, and a preset that is no text.
+    Raises FormatError for a value of another type than its key's, and a text with control
+    characters.
     """
     for key, value in info.items():
-        if not isinstance(key, str) or not isinstance(value, (str, int, float, bool)):
-            raise _error(key, _PLAIN, type(value).__name__)
+        if not isinstance(key, str):
+            raise _error(key, "text as key", type(key).__name__)
+        check_text(META, "document.info", key)
+        _check(key, value)
     return {
         1 + MEASURES.index(key) if key in MEASURES else key: _stored(key, value)
         for key, value in info.items()
@@ -39,13 +48,13 @@ def encode(info: Mapping[str, Scalar]) -> dict[int | str, Scalar]:
 def decode(stored: dict[Any, Any]) -> dict[str, Scalar]:
     """The inverse of `encode`; a float32 comes back as the shortest decimal that means it.
 
-    Raises FormatError for an unknown number, and for a text that has a number.
+    Raises FormatError for an unknown number, a text that has a number, a value of another type than
+    its key's, and a text with control characters.
     """
     info: dict[str, Scalar] = {}
     for key, value in stored.items():
-        if type(value) not in (str, int, float, bool):
-            raise _error(key, _PLAIN, type(value).__name__)
         name = _name(key)
+        _check(name, value)
         counted = name in _COUNTED and type(value) is int
         if name == _PRESET:
             info[name] = _preset(value)
@@ -59,7 +68,16 @@ def _name(key: object) -> str:
         return MEASURES[key - 1]
     if type(key) is not str or key in MEASURES:
         raise _error(key, f"1 to {len(MEASURES)}, or another name", repr(key))
+    check_text(META, "document.info", key)
     return key
+
+
+def _check(name: str, value: object) -> None:
+    kinds, expected = _KINDS.get(name, ((str, int, float, bool), _PLAIN))
+    if not isinstance(value, kinds) or (isinstance(value, bool) and bool not in kinds):
+        raise _error(name, expected, type(value).__name__)
+    if isinstance(value, str):
+        check_text(META, f"document.info.{name}", value)
 
 
 def _preset(value: Scalar) -> str:

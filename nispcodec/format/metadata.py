@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from nispcodec.core.asset import Material
-from nispcodec.core.document import ChartTable, Document, Frame
+from nispcodec.core.document import ChartTable, Document, Field, Frame
 from nispcodec.core.network import MAX_CHARTS, NetworkSpec
 from nispcodec.format import canonical, measures, topology
 from nispcodec.format.constants import META
@@ -26,13 +26,14 @@ _UV_MAP = (0.0, 0.0, 1.0, 1.0)
 
 @dataclass(frozen=True)
 class Metadata:
-    """The content of META: a document without its weights and images.
+    """The content of META: a document without its weights, triangles and images.
 
-    `textures` are (name, mime type, bytes in TXTR); None for the last, which takes what is left.
+    Without a field there are no `charts` and no `specs`. `textures` are (name, mime type, bytes in
+    TXTR); None for the last, which takes what is left.
     """
 
     frame: Frame
-    charts: ChartTable
+    charts: ChartTable | None
     materials: tuple[Material, ...]
     textures: tuple[tuple[str, str, int | None], ...]
     specs: dict[str, NetworkSpec]
@@ -42,22 +43,29 @@ class Metadata:
 
 def encode(document: Document) -> bytes:
     """The bytes of META. Raises FormatError for a document that META cannot hold."""
-    table = document.charts
-    specs = {name: network.spec for name, network in document.networks.items()}
     fields: dict[int, tuple[Any, Any]] = {
         1: ([float(x) for x in (*document.frame.center, document.frame.radius)], None),
-        2: (topology.encode(specs), None),
-        3: (len(table), 1),
-        4: (_material_bytes(table, len(document.materials)), b""),
-        5: (b"" if table.has_uv.all() else np.packbits(table.has_uv).tobytes(), b""),
-        6: ([float(x) for x in (*table.uv_offset, *table.uv_scale)], list(_UV_MAP)),
         7: ([encode_material(material) for material in document.materials], [{}]),
         8: (encode_textures(document.textures), []),
-        9: (float(document.half_thickness), 0.0),
         10: (measures.encode(document.info), {}),
+    }
+    if document.field:
+        fields |= _field_items(document.field, len(document.materials))
+    return canonical.encode(META, sparse(fields))
+
+
+def _field_items(field: Field, materials: int) -> dict[int, tuple[Any, Any]]:
+    table = field.charts
+    specs = {name: network.spec for name, network in field.networks.items()}
+    return {
+        2: (topology.encode(specs), None),
+        3: (len(table), 1),
+        4: (_material_bytes(table, materials), b""),
+        5: (b"" if table.has_uv.all() else np.packbits(table.has_uv).tobytes(), b""),
+        6: ([float(x) for x in (*table.uv_offset, *table.uv_scale)], list(_UV_MAP)),
+        9: (float(field.half_thickness), 0.0),
         11: (table.openings, False),
     }
-    return canonical.encode(META, sparse(fields))
 
 
 def decode(data: bytes | memoryview) -> Metadata:
@@ -67,19 +75,24 @@ def decode(data: bytes | memoryview) -> Metadata:
     """
     record = Record(META, "document", canonical.decode(META, data))
     x, y, z, radius = record.floats(1, "frame", 4)
-    count = record.integer(3, "charts", 1, MAX_CHARTS, 1)
-    networks = Record(META, "networks", record.take(2, "networks", dict))
     materials = tuple(
         decode_material(index, value)
         for index, value in enumerate(record.take(7, "materials", list, [{}]))
     )
+    charts, specs, half_thickness = None, {}, 0.0
+    if 2 in record:
+        networks = Record(META, "networks", record.take(2, "networks", dict))
+        count = record.integer(3, "charts", 1, MAX_CHARTS, 1)
+        charts = _decode_charts(record, count, len(materials))
+        specs = topology.decode(networks, count)
+        half_thickness = record.take(9, "half_thickness", float, 0.0)
     metadata = Metadata(
         frame=Frame((x, y, z), radius),
-        charts=_decode_charts(record, count, len(materials)),
+        charts=charts,
         materials=materials,
         textures=decode_textures(record.take(8, "textures", list, [])),
-        specs=topology.decode(networks, count),
-        half_thickness=record.take(9, "half_thickness", float, 0.0),
+        specs=specs,
+        half_thickness=half_thickness,
         info=measures.decode(record.take(10, "info", dict, {})),
     )
     record.finish()

@@ -117,10 +117,10 @@ def check_file_name(section: str, path: str, value: str) -> None:
 def located(section: str, path: str) -> Iterator[None]:
     """Raises errors of the types in `core`, which know no section, as FormatError with theirs.
 
-    A field is named below `path`.
+    A field is named below `path`, or as it is where that is empty.
     """
     try:
         yield
     except FormatError as error:
-        field = f"{path}.{error.field}"
+        field = f"{path}.{error.field}" if path else error.field
         raise FormatError(section, field, error.expected, error.found) from error

@@ -13,18 +13,13 @@ from nispcodec.core.arrays import AnyArray, Float32Array, Int32Array, Int64Array
 from nispcodec.core.errors import FormatError
 from nispcodec.core.initial_weights import predicted
 from nispcodec.core.network import Network, NetworkSpec
-from nispcodec.format import steps
+from nispcodec.format import steps, tag
 from nispcodec.format.codings import entropy
 from nispcodec.format.codings.reader import Reader, varint
 from nispcodec.format.codings.registry import BY_NUMBER, REGISTRY, Coding
-from nispcodec.format.constants import (
-    MAX_JOINED,
-    MAX_SYMBOL,
-    MAX_UNPACKED,
-    NETS,
-    STEPS,
-)
+from nispcodec.format.constants import MAX_SYMBOL, MAX_UNPACKED, NETS, STEPS
 from nispcodec.format.container import pack_content
+from nispcodec.format.tag import MOST_TOGETHER, Tag
 from nispcodec.format.tensor import Tensor
 
 _NONE = [np.zeros(1, np.int64)]
@@ -60,13 +55,13 @@ class Record:
             row_shifts = np.concatenate(self._row_shifts)
             name, step = steps.encode(first.path, first.step, self.before, row_shifts, self.width)
             form = 1 + STEPS.index(name)
-        tag = self.coding.number | form << 3 | len(self.tensors) - 1 << 6
+        start = Tag(self.coding.number, form, len(self.tensors) - 1).encode() + step
         if self.coding.codec:
-            return bytes([tag]) + step + self.coding.codec.encode(self._values[0])
+            return start + self.coding.codec.encode(self._values[0])
         assert self.run is not None
         scaled = self.tensors if self.coding.predicts else []
         scales = b"".join(varint(tensor.init_scale) for tensor in scaled)
-        return bytes([tag]) + step + scales + self.run.header()
+        return start + scales + self.run.header()
 
     @property
     def _row_shifts(self) -> list[Int64Array]:
@@ -115,7 +110,7 @@ def candidates(name: str, network: Network) -> list[Candidate]:
     found = []
     for start in range(len(every)):
         before = every[start - 1].step if start else None
-        for end in range(start + 1, min(start + 1 + MAX_JOINED, len(every)) + 1):
+        for end in range(start + 1, min(start + MOST_TOGETHER, len(every)) + 1):
             run = every[start:end]
             if run[-1].step != run[0].step:
                 break
@@ -179,18 +174,15 @@ def read(reader: Reader, path: str, spec: NetworkSpec) -> list[Part]:
 
 
 def _read(reader: Reader, left: list[str], spec: NetworkSpec, before: float | None) -> Part:
-    tag = reader.take(1, "coding")[0]
-    number, form, joined = tag & 7, tag >> 3 & 7, tag >> 6
-    if number not in BY_NUMBER:
-        raise reader.error("coding", f"1 to {len(REGISTRY)}", number)
-    coding = BY_NUMBER[number]
+    start = tag.decode(reader)
+    coding, form = BY_NUMBER[start.coding], start.form
     if coding.predicts and not form:
         raise reader.error("step", f"1 to {len(STEPS)} with {coding.name}", form)
     most = 0 if coding.codec else len(left) - 1
-    if joined > most:
-        raise reader.error("joined", f"at most {most} more tensors", joined)
+    if start.joined > most:
+        raise reader.error("joined", f"at most {most} more tensors", start.joined)
     step = steps.decode(reader, STEPS[form - 1], before) if form else None
-    names = left[: 1 + joined]
+    names = left[: 1 + start.joined]
     shapes = [_matrix_shape(spec.shapes[name]) for name in names]
     every = _row_shifts(reader, STEPS[form - 1], shapes) if form else _NONE
     row_shifts = np.concatenate([each.ravel() for each in every])

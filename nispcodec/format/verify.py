@@ -30,19 +30,20 @@ def verify(data: bytes, decode_texture: Callable[[Texture], object]) -> list[For
         return [error]
     return [
         problem
-        for texture in document.textures
-        for problem in _texture_problems(texture, decode_texture)
+        for number, texture in enumerate(document.textures)
+        for problem in _texture_problems(f"textures.{number}", texture, decode_texture)
     ]
 
 
 def _texture_problems(
-    texture: Texture, decode_texture: Callable[[Texture], object]
+    field: str, texture: Texture, decode_texture: Callable[[Texture], object]
 ) -> Iterator[FormatError]:
     offset, start = _STARTS[texture.mime]
     found = texture.data[offset : offset + len(start)]
     if found != start:
-        yield FormatError(TXTR, texture.name, f"{texture.mime}, beginning with {start!r}", found)
+        expected = f"{texture.name} an image of {texture.mime}, beginning with {start!r}"
+        yield FormatError(TXTR, field, expected, found)
     try:
         decode_texture(texture)
     except NispError as error:
-        yield FormatError(TXTR, texture.name, "an image that decodes", error)
+        yield FormatError(TXTR, field, f"{texture.name} an image that decodes", error)

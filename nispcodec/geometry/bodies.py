@@ -40,7 +40,7 @@ class Bodies:
     rim        (b,) int64, into the 3 m sides of faces, once turned, each from a corner to the next:
                those that no side of another face cancels; none of spare faces
     loops      (b,) int32: sides of the rim that corners of one body connect share a number
-    welded     how many positions were taken for one that differ by rounding
+    welded     how many positions were joined across gaps that rounding does not explain
     """
 
     body: Int32Array
@@ -60,11 +60,10 @@ def find_bodies(
 
     positions (m, 3) are the same numbers, from 0 up, for the same positions.
     """
-    places, sheet = positions, _single(positions)
-    joined = _seams_welded(corners, positions, sheet, config.weld)
-    if joined is not None:
-        places, sheet = joined, _single(joined)
-    welded = 0 if joined is None else len(np.unique(positions)) - len(np.unique(joined))
+    sheet = _single(positions)
+    places, welded = _seams_welded(corners, positions, sheet, config)
+    if places is not positions:
+        sheet = _single(places)
     flipped, unclear = _flipped(corners[sheet.faces], sheet, config)
     names = connected_components(*_neighbors(sheet.edge), len(sheet.faces))[1]
     flipped ^= _inside_out(turn(corners[sheet.faces], flipped), sheet, flipped, names, config)
@@ -105,7 +104,7 @@ def sentences(bodies: Bodies, sizes: Float64Array, sheet: BoolArray) -> tuple[st
     if repeated.any():
         told.append(f"took faces once that are there both ways round: {share(repeated)}")
     if bodies.welded:
-        told.append(f"closed seams that rounding had opened: {bodies.welded:,} positions")
+        told.append(f"closed seams that stood open: {bodies.welded:,} positions")
     if bodies.unclear.any():
         told.append(f"could not tell which way round faces are: {share(bodies.unclear)}")
     return tuple(told)
@@ -158,22 +157,24 @@ def _single(places: Int64Array) -> _Single:
 
 
 def _seams_welded(
-    corners: Float64Array, positions: Int64Array, sheet: _Single, tolerance: float
-) -> Int64Array | None:
-    """The positions, those at rims joined that are nearer to each other; None where none are."""
+    corners: Float64Array, positions: Int64Array, sheet: _Single, config: SolidConfig
+) -> tuple[Int64Array, int]:
+    """The positions, those near each other at rims joined, and how many of these had a gap."""
     sides = np.flatnonzero(np.bincount(sheet.edge)[sheet.edge] == 1)
     if not len(sides):
-        return None
+        return positions, 0
     face, corner = np.divmod(sides, 3)
     ends = np.stack([corner, (corner + 1) % 3], axis=1)
     name, at = np.unique(sheet.places[face[:, None], ends], return_index=True)
     spots = corners[sheet.faces[face[:, None]], ends].reshape(-1, 3)[at]
-    pairs = cKDTree(spots).query_pairs(tolerance, output_type="ndarray")
+    pairs = cKDTree(spots).query_pairs(config.weld, output_type="ndarray")
     if not len(pairs):
-        return None
+        return positions, 0
+    gaps = np.linalg.norm(spots[pairs[:, 0]] - spots[pairs[:, 1]], axis=1)
+    open_ends = len(np.unique(pairs[gaps > config.gap]))
     size = int(positions.max()) + 1
     joined = connected_components(name[pairs[:, 0]], name[pairs[:, 1]], size)[1]
-    return joined.astype(np.int64)[positions]
+    return joined.astype(np.int64)[positions], open_ends
 
 
 def _neighbors(edge: Int64Array) -> tuple[Int64Array, Int64Array]:

@@ -12,6 +12,7 @@ from scipy.spatial import cKDTree
 
 from nispcodec.core.arrays import BoolArray, Float64Array, Int64Array
 from nispcodec.core.connectivity import row_ids
+from nispcodec.core.cores import cores
 
 
 def shared_corners(pieces: Float64Array, hidden: BoolArray) -> Float64Array:
@@ -48,6 +49,6 @@ def reach_of(
     reach = np.full(len(pieces), np.inf)
     for points, share in ((gaps, 1.0), (rim, 0.5)):
         if len(points):
-            away = cKDTree(points).query(center, workers=-1)[0]
+            away = cKDTree(points).query(center, workers=cores())[0]
             reach = np.minimum(reach, share * (away - size))
     return np.maximum(reach, 0.0)

@@ -103,16 +103,19 @@ class _Forward:
             for (weight, bias), scale in zip(network.layers, scales, strict=True)
         ]
         self.embedding: Float32Array | None = None
-        if self.spec.embedding:
-            self.embedding = np.ascontiguousarray(network.tensors["embedding"].T)
         self.frames: Float32Array | None = None
         if self.spec.conditioning == "chart_affine":
+            self.embedding = np.ascontiguousarray(network.tensors["embedding"].T)
             self.frames = _frames(network)
         self.mirrored = np.array(self.spec.mirrored)[:, None]
         self._own = local()
 
     def __call__(self, points: Float32Array, charts: Int32Array | None) -> Float32Array:
-        """Outputs (outputs, n) at points (n, 3)."""
+        """Outputs (outputs, n) at points (n, 3); NaN and infinities where they overflow."""
+        with np.errstate(over="ignore", invalid="ignore"):
+            return self._outputs(points, charts)
+
+    def _outputs(self, points: Float32Array, charts: Int32Array | None) -> Float32Array:
         activations = self._input(points, charts)
         buffers = self._buffers(2, len(points))
         for index, layer in enumerate(self.layers[:-1]):

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-import os
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import contextmanager, nullcontext
 from functools import cache
 from threading import Lock, local
 from typing import TypeVar
 
 from threadpoolctl import ThreadpoolController
+
+from nispcodec.core.cores import at_most, cores
 
 Part = TypeVar("Part")
 
@@ -42,11 +44,12 @@ def parallel_for(run: Callable[[Part], object], parts: Sequence[Part]) -> None:
             done.result()
 
 
-def cores() -> int:
-    """How many cores this process may use."""
-    if hasattr(os, "sched_getaffinity"):
-        return len(os.sched_getaffinity(0))
-    return os.cpu_count() or 1
+@contextmanager
+def on_cores(count: int) -> Iterator[None]:
+    """In this block what this process computes uses so many cores; 0: all of them."""
+    limits = nullcontext() if count == 0 else ThreadpoolController().limit(limits=count)
+    with at_most(count), limits:
+        yield
 
 
 @cache

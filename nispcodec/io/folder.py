@@ -23,11 +23,15 @@ class Folder:
         Backslashes count as slashes, and neither case nor the way matters in which accents are
         composed. A path from another machine falls back to its last part, beside the asset.
         """
-        parts = [part for part in re.split(r"[\\/]+", reference) if part not in ("", ".")]
+        parts = parts_of(reference)
         if not parts:
             return None
         start = Path("/") if Path(reference).is_absolute() else self.path
         return _walk(start, parts) or _walk(self.path, parts[-1:])
+
+    def beside(self, path: Path) -> Folder:
+        """The folder that a file which was found here is in."""
+        return Folder(path.parent)
 
     def read(self, path: Path) -> bytes:
         """The file's bytes. Raises MeshError when it cannot be read."""
@@ -35,6 +39,16 @@ class Folder:
             return path.read_bytes()
         except OSError as why:
             raise MeshError(f"{path}: cannot be read: {why}") from why
+
+
+def parts_of(reference: str) -> list[str]:
+    """The names on the way that a reference goes; backslashes count as slashes."""
+    return [part for part in re.split(r"[\\/]+", reference) if part not in ("", ".")]
+
+
+def alike(first: str, second: str) -> bool:
+    """Whether names differ in case or composed accents alone, as archives from macOS have it."""
+    return _alike(first) == _alike(second)
 
 
 def _walk(folder: Path, parts: Sequence[str]) -> Path | None:
@@ -57,9 +71,8 @@ def _entry(folder: Path, name: str) -> Path | None:
         entries = sorted(folder.iterdir())
     except (OSError, ValueError):  # not a folder, or a name that no file can have
         return None
-    return next((entry for entry in entries if _alike(entry.name) == _alike(name)), None)
+    return next((entry for entry in entries if alike(entry.name, name)), None)
 
 
 def _alike(name: str) -> str:
-    """Equal for names that differ in case, or in NFC and NFD as archives from macOS have it."""
     return unicodedata.normalize("NFC", unicodedata.normalize("NFC", name).casefold())

@@ -14,8 +14,9 @@ import PIL.Image
 
 from nispcodec.core.arrays import Uint16Array
 from nispcodec.core.asset import Texture
-from nispcodec.core.errors import MeshError
+from nispcodec.core.errors import MeshError, NispError
 from nispcodec.core.texture import BROKEN_IMAGE
+from nispcodec.io.ktx2 import is_ktx2, png_of_ktx2
 
 # The formats that stay as they are, by Pillow's name.
 _KEPT = {
@@ -43,7 +44,7 @@ _CONVERTED = (
 _UNSUPPORTED = {
     b"v/1\x01": "an OpenEXR",
     b"#?RADIANCE": "a Radiance",
-    b"\xabKTX": "a KTX",
+    b"\xabKTX 11": "a KTX 1",
     b"<svg": "an SVG",
 }
 # What may stand before the first element of XML.
@@ -71,7 +72,7 @@ class TextureShelf:
         if data not in self._places:
             try:
                 texture = self._texture(name, data, place)
-            except MeshError as why:
+            except NispError as why:
                 self._warnings.append(f"{why}: left out")
                 return None
             self._places[data] = self._placed(texture)
@@ -89,14 +90,18 @@ class TextureShelf:
         kind = _unsupported(data)
         if kind is not None:
             raise MeshError(f"{place}: {kind} image is not supported")
+        if is_ktx2(data):
+            return self._converted("KTX2", name, png_of_ktx2(data, place), place)
         data, image = self._whole(data, place)
-        found, stem = str(image.format), _stem(name)
+        found = str(image.format)
         if found in _KEPT:
             mime, suffix = _KEPT[found]
-            return Texture(self._free_name(stem, suffix), data, mime)
-        png = _as_png(image, place)
+            return Texture(self._free_name(_stem(name), suffix), data, mime)
+        return self._converted(found, name, _as_png(image, place), place)
+
+    def _converted(self, found: str, name: str, png: bytes, place: str) -> Texture:
         self._warnings.append(f"{place}: a {found} image, converted to PNG")
-        return Texture(self._free_name(stem, ".png"), png, "image/png")
+        return Texture(self._free_name(_stem(name), ".png"), png, "image/png")
 
     def _whole(self, data: bytes, place: str) -> tuple[bytes, PIL.Image.Image]:
         """The bytes and the image in them; a JPEG that is cut short gets its end mark."""

@@ -38,19 +38,32 @@ def load_mesh(path: str | Path) -> TexturedMesh:
     the place in it, for whatever cannot be read.
     """
     path = Path(path)
+    reader_of(path)
+    return parse_mesh(_read(path), path, Folder(path.parent))
+
+
+def parse_mesh(data: bytes, path: Path, folder: Folder) -> TexturedMesh:
+    """The mesh in the bytes of a file, as `load_mesh` gives it; `folder` finds what it names.
+
+    Raises MeshError as `load_mesh` does.
+    """
+    reader = reader_of(path)
+    if not data:
+        raise MeshError(f"{path}: expected a mesh, found an empty file")
+    mesh = clean(reader(data, path.name, folder), path.name)
+    return replace(with_outliers_named(mesh), name=path.stem)
+
+
+def reader_of(path: Path) -> Reader:
+    """The reader for a file's suffix. Raises MeshError, naming all suffixes, for another one."""
     reader = READERS.get(path.suffix.lower())
     if reader is None:
         raise MeshError(f"{path}: expected one of {' '.join(READERS)}, found {path.suffix!r}")
-    data = _read(path)
-    mesh = clean(reader(data, path.name, Folder(path.parent)), path.name)
-    return replace(with_outliers_named(mesh), name=path.stem)
+    return reader
 
 
 def _read(path: Path) -> bytes:
     try:
-        data = path.read_bytes()
+        return path.read_bytes()
     except (OSError, ValueError) as why:
         raise MeshError(f"{path}: cannot be read: {why}") from why
-    if not data:
-        raise MeshError(f"{path}: expected a mesh, found an empty file")
-    return data

@@ -19,6 +19,7 @@ from nispcodec.metrics.geometry import (
     distance_summary,
     normal_consistency,
 )
+from nispcodec.metrics.normal_maps import angle_summary, normal_angles
 from nispcodec.metrics.parameterization import distortion_summary
 from nispcodec.metrics.sides import Sides, sides_of
 from nispcodec.metrics.spurious import spurious_components
@@ -80,6 +81,9 @@ class Reference:
             report["uv"] = _uv(original, second, directions)
             report["parameterization"] = _parameterization(original, second)
         report["color"] = {"psnr": color_psnr(original, second, directions.values())}
+        angles = normal_angles(original, second, directions["original_to_decoded"])
+        if len(angles):
+            report["normal_map"] = {**angle_summary(angles)}
         if model is not None:
             world = self.frame.to_world(original.outlook(self.seen))
             report["charts"] = _charts(original, self.seen, world, model)
@@ -98,8 +102,8 @@ def compare(
 
     Both meshes are in the world frame. `samples` points are drawn from each surface, uniformly by
     area; of those on the original only the outer ones count. The chart accuracy is there when the
-    `model` to ask is given, uv and parameterization when the original has UVs. The same seed gives
-    the same numbers.
+    `model` to ask is given, uv and parameterization when the original has UVs, and the angles of
+    normal maps in degrees when both have some. The same seed gives the same numbers.
     Raises MeshError when a mesh has no surface or a texture does not decode.
     """
     return Reference.of(original, samples=samples, seed=seed).compare(decoded, model)

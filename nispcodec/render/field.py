@@ -1,4 +1,4 @@
-"""A model to look at without a mesh: sphere tracing; normals, charts and UVs by network."""
+"""A field to look at without a mesh: sphere tracing; normals, charts and UVs by network."""
 
 from __future__ import annotations
 
@@ -6,10 +6,10 @@ import numpy as np
 
 from nispcodec.core.arrays import Float32Array, Int32Array, Int64Array
 from nispcodec.core.asset import Material, Texture
-from nispcodec.core.document import Frame
+from nispcodec.core.document import Document, Field, Frame
 from nispcodec.core.extras import require
 from nispcodec.infer.evaluate import gradient
-from nispcodec.model import NispModel
+from nispcodec.infer.field import FieldQueries
 from nispcodec.render.fragments import Cast, Fragments
 from nispcodec.render.march import March
 from nispcodec.render.space import bounding_space
@@ -24,35 +24,36 @@ OPENING = Material("opening", base_color=(0.0, 0.0, 0.0, 0.0), alpha_mode="mask"
 
 
 class FieldScene:
-    """The networks of a model as a scene; making one evaluates the field on a grid.
+    """The field of a document as a scene; making one evaluates it on a grid.
 
     Raises NispError without the extra `render`.
     """
 
-    def __init__(self, model: NispModel) -> None:
+    def __init__(self, document: Document, field: Field) -> None:
         require("scipy", extra="render", what_for="rendering")
-        self.model = model
-        self.space = bounding_space(model.document.sdf, model.document.half_thickness)
+        self._document, self._field = document, field
+        self._queries = FieldQueries(field)
+        self.space = bounding_space(field.sdf, field.half_thickness)
         self._chart_materials = self._materials_of_charts()
 
     @property
     def frame(self) -> Frame:
         """The document's frame."""
-        return self.model.document.frame
+        return self._document.frame
 
     @property
     def materials(self) -> tuple[Material, ...]:
         """The document's materials, and one more that is invisible, for its openings."""
-        return (*self.model.document.materials, OPENING)
+        return (*self._document.materials, OPENING)
 
     @property
     def textures(self) -> tuple[Texture, ...]:
         """The document's textures."""
-        return self.model.document.textures
+        return self._document.textures
 
     def _materials_of_charts(self) -> Int32Array:
         """(k,) int32: the material of each chart."""
-        table = self.model.document.charts
+        table = self._field.charts
         materials = table.materials.copy()
         if table.openings:
             materials[-1] = len(self.materials) - 1
@@ -60,7 +61,7 @@ class FieldScene:
 
     def cast(self, origins: Float32Array, directions: Float32Array, layer: int = 0) -> Cast:
         """Cast rays (n, 3), (n, 3) by sphere tracing; see `Scene.cast`."""
-        sdf = self.model.document.sdf
+        sdf = self._field.sdf
         trace = March(sdf, self.space, origins, directions, inside=layer % 2 == 1).run()
         rays = np.flatnonzero(np.isfinite(trace.distances))
         points = origins[rays] + trace.distances[rays, None] * directions[rays]
@@ -81,10 +82,10 @@ class FieldScene:
         slopes: Float32Array,
         towards: Float32Array,
     ) -> Fragments:
-        table = self.model.document.charts
+        table = self._field.charts
         normals = slopes / np.maximum(np.linalg.norm(slopes, axis=1, keepdims=True), 1e-12)
-        charts = self.model.charts(points, "normalized")
-        uvs = self.model.uv(points, "normalized", charts)
+        charts = self._queries.charts(points)
+        uvs = self._queries.uv(points, charts)
         return Fragments(
             rays=rays,
             distances=distances,
@@ -103,6 +104,6 @@ class FieldScene:
         """(n, 2, 3): the UV network's Jacobian within the tangent plane, by two more queries."""
         jacobians = np.zeros((len(points), 2, 3), np.float32)
         for axis in tangent_axes(normals):
-            moved = self.model.uv(points + OFFSET * axis, "normalized", charts)
+            moved = self._queries.uv(points + OFFSET * axis, charts)
             jacobians += ((moved - uvs) / OFFSET)[:, :, None] * axis[:, None, :]
         return jacobians

@@ -7,8 +7,9 @@ from dataclasses import dataclass, fields
 import numpy as np
 
 from nispcodec.core.arrays import BoolArray, Float32Array, FloatArray, Int32Array, Int64Array
+from nispcodec.core.cores import cores
 from nispcodec.core.texture import linear_to_srgb
-from nispcodec.infer.parallel import cores, parallel_for
+from nispcodec.infer.parallel import parallel_for
 from nispcodec.render.camera import Camera
 from nispcodec.render.fragments import Fragments, Scene
 from nispcodec.render.maps import Maps

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from nispcodec.core.arrays import Float32Array, Float64Array, Int64Array
+from nispcodec.core.arrays import Float32Array, Float64Array, Int32Array, Int64Array
 from nispcodec.core.asset import Material, Texture, TexturedMesh
 from nispcodec.core.document import Frame
 from nispcodec.core.extras import require
@@ -18,10 +18,13 @@ class MeshScene:
     """A mesh in the world frame as a scene, placed by `frame`.
 
     That is the mesh's own by default, or the original's when it is compared with one. Raises
-    MeshError for a mesh without a surface, NispError without the extra `render`.
+    MeshError for a mesh without a surface, NispError without the extra `render`. `charts` (m,) are
+    those of the faces, for the channel that shows them.
     """
 
-    def __init__(self, mesh: TexturedMesh, frame: Frame | None = None) -> None:
+    def __init__(
+        self, mesh: TexturedMesh, frame: Frame | None = None, charts: Int32Array | None = None
+    ) -> None:
         require("embreex", "igl", extra="render", what_for="rendering a mesh")
         from embreex.mesh_construction import TriangleMesh
         from embreex.rtcore_scene import EmbreeScene
@@ -34,6 +37,7 @@ class MeshScene:
         self._embree.run(np.zeros((1, 3), np.float32), np.ones((1, 3), np.float32))
         self._corner_normals = corner_normals(self.surface)
         self._jacobians = face_jacobians(self.surface)
+        self._charts = np.full(len(mesh.faces), -1, np.int32) if charts is None else charts
 
     @property
     def materials(self) -> tuple[Material, ...]:
@@ -85,7 +89,7 @@ class MeshScene:
             jacobians=self._jacobians[faces],
             materials=mesh.face_materials[faces],
             textured=mesh.has_uv[faces],
-            charts=np.full(len(faces), -1, np.int32),
+            charts=self._charts[faces],
         )
 
 

@@ -11,22 +11,22 @@ from nispcodec.core.asset import TexturedMesh
 from nispcodec.core.document import Frame
 from nispcodec.model import NispModel
 from nispcodec.render.camera import Camera
-from nispcodec.render.field import FieldScene
 from nispcodec.render.fragments import Scene
 from nispcodec.render.maps import Maps
+from nispcodec.render.parts import model_scene
 from nispcodec.render.picture import Eye
 from nispcodec.render.raycast import MeshScene
 
 
 def scene_of(asset: NispModel | TexturedMesh | Scene, frame: Frame | None = None) -> Scene:
-    """Something to render: a model is sphere-traced, a mesh is hit by rays.
+    """Something to render: a model's field is sphere-traced, triangles are hit by rays.
 
     `frame` places a mesh: that of the original, when the mesh is compared with it; by default its
     own. Making a scene takes time: keep it for several pictures. Raises MeshError for a mesh
     without a surface.
     """
     if isinstance(asset, NispModel):
-        return FieldScene(asset)
+        return model_scene(asset.document)
     return MeshScene(asset, frame) if isinstance(asset, TexturedMesh) else asset
 
 

@@ -39,12 +39,35 @@ def train(
     (`nispcodec.dataset.hard_examples`).
 
     A run whose held-out error explodes goes on from its best weights at half the rate; where lower
-    rates do not help, the best network so far is what there is, and a note says so. At the end the
-    weights are rounded (`nispcodec.train.quantize`), if the task says how.
+    rates do not help, the best network so far is what there is, and a note says so. A run that
+    ended far worse than was foreseen is made again from another seed, unless a `mask`
+    ties it to its initial weights; the better of the two stays. At the end the weights are rounded
+    (`nispcodec.train.quantize`), if the task says how.
     Raises FitError for a network that is far worse than a constant, whose weights cannot be
     rounded, or that the engine does not train.
     """
-    return _Run(task, seed, engine, core, listen, mask).fit()
+    run = _Run(task, seed, engine, core, listen, mask)
+    run.fit()
+    if mask is None and run.went_wrong:
+        run = min(run, _made_again(run, seed, engine), key=lambda each: each.comparable_error)
+    return run.network()
+
+
+def _made_again(run: _Run, seed: int, engine: Engine) -> _Run:
+    """Another run of the same task, from the initial weights that are furthest from this seed's.
+
+    It is told as if all steps had been done before: they had.
+    """
+    task, config = run.task, run.config.loop
+    steps = max(1, round(config.again_steps * task.schedule.steps))
+    task_again = replace(task, schedule=replace(task.schedule, steps=steps))
+
+    def heard(update: Progress) -> None:
+        run.listen(replace(update, step=task.schedule.steps, steps=task.schedule.steps))
+
+    again = _Run(task_again, seed + (MAX_INIT_SEED + 1) // 2, engine, run.core, heard, None)
+    again.fit()
+    return again
 
 
 class _Run:
@@ -75,7 +98,20 @@ class _Run:
         self.hardness: FloatArray = np.zeros(len(task.samples), dtype=np.float32)
         self.rates = _rates(task.schedule, self.config.loop)
 
-    def fit(self) -> Network:
+    @property
+    def comparable_error(self) -> float:
+        """The best held-out error; infinite where there was none."""
+        return self.best_error if math.isfinite(self.best_error) else math.inf
+
+    @property
+    def went_wrong(self) -> bool:
+        """Whether it ended far worse than was foreseen, and than anybody would not notice."""
+        config, task = self.config.loop, self.task
+        fine = config.again_unnoticed * task.objective.good
+        return self.comparable_error > config.went_wrong * max(task.foreseen, fine)
+
+    def fit(self) -> None:
+        """Do all steps, and keep the weights with the best held-out error."""
         started, minings = time.monotonic(), _minings(self.task.schedule)
         for start, stop in _spans(self.task.schedule, minings, self.config.loop):
             with self.core() as threads:
@@ -89,6 +125,11 @@ class _Run:
             self._tell("fit", stop, self.error, left, note, warning)
             if given_up:
                 break
+        if self.went_wrong:
+            self._tell("fit", self.task.schedule.steps, self.best_error, 0.0, self._wrong())
+
+    def network(self) -> Network:
+        """The best weights, rounded if the task says how. Raises FitError if they are useless."""
         self._expect_useful()
         with self.core():
             return self._network()
@@ -133,6 +174,12 @@ class _Run:
         rate = self.task.schedule.rate / 2**self.retries
         return f"diverged at step {done}: going on from the best weights at rate {rate:g}"
 
+    def _wrong(self) -> str:
+        return (
+            f"held-out error {self.best_error:.3g}, foreseen {self.task.foreseen:.3g}: a fit that "
+            "went wrong"
+        )
+
     def _given_up(self) -> str:
         return (
             f"{self.task.name} network: held-out error {self.error:g} after "
@@ -170,7 +217,8 @@ class _Run:
         unrounded = Unrounded(
             self.task, self.layout, self.trainer, self.best, self.first, self.kept
         )
-        rise = config.slight if len(self.best) < config.large else config.notable
+        usual = config.slight if len(self.best) < config.large else config.notable
+        rise = max(usual, quantization.rise)
         absolute = self._absolute(quantization)
         spoiled = config.spoiled * max(before, config.unnoticed * self.task.objective.good)
         tries: list[tuple[float, Float32Array, Float64Array]] = []

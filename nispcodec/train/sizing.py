@@ -6,7 +6,7 @@ that it is left with says how much there is to learn.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 
 from nispcodec.core.network import NetworkSpec
 from nispcodec.train.config import SizingConfig
@@ -37,6 +37,15 @@ def hidden_layers(
 def is_fine(errors: Mapping[str, float], config: SizingConfig) -> bool:
     """Whether an asset is of fine detail: its SDF is wider, deeper, and learns slower."""
     return errors["sdf"] > config.fine
+
+
+def foreseen(error: float, probe: Sequence[int], hidden: Sequence[int]) -> float:
+    """The held-out error that a longer fit should end below, from that of its probe.
+
+    By the width of the first hidden layers: a fit of a wider network should at least gain what its
+    width does, which is about in proportion. That it is longer should help it further.
+    """
+    return error * probe[0] / hidden[0]
 
 
 def smallest(names: Iterable[str], config: SizingConfig = SizingConfig()) -> Hidden:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
 
 from nispcodec.core.network import NetworkSpec
@@ -19,10 +20,13 @@ class Quantization:
                 it; where that is the loss' own, a share of what the fit is left with: so every
                 asset has a lambda of its own
     bit_budget  bits that all weights together take; 0: as lambda says
+    rise        times the held-out error that it may cost before it is tried again, if that is more
+                than `QuantizeConfig` says
     """
 
     lambda_: float
     bit_budget: float = 0.0
+    rise: float = 1.0
 
 
 @dataclass(frozen=True)
@@ -53,7 +57,8 @@ class Schedule:
 class Task:
     """Fit `spec` to `samples` by an objective, whose error on `held_out` says how good it is.
 
-    Without `quantization` the weights stay float32.
+    Without `quantization` the weights stay float32. `foreseen` is the held-out error that a fit of
+    this task should end below; infinite where nobody knows.
     """
 
     name: str
@@ -64,6 +69,7 @@ class Task:
     schedule: Schedule
     quantization: Quantization | None = None
     pruning: Pruning | None = None
+    foreseen: float = math.inf
     config: TrainConfig = field(default_factory=TrainConfig)
 
     @property

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
@@ -10,7 +11,7 @@ from nispcodec.core.sample_set import SampleSet
 from nispcodec.dataset.recipes import TrainingSets
 from nispcodec.train.config import PaperConfig, TrainConfig, TrainingBudget
 from nispcodec.train.objectives import OBJECTIVES, PaperSdfObjective
-from nispcodec.train.sizing import Hidden, is_fine
+from nispcodec.train.sizing import Hidden, foreseen, is_fine
 from nispcodec.train.task import Quantization, Schedule, Task
 
 
@@ -98,9 +99,12 @@ def sine_tasks(
             rate = config.fine_rate if fine else learning.learning_rate
             minings = max(budget.minings, steps // budget.mine_every)
             schedule = replace(schedule, rate=rate, minings=minings)
-        quantization = Quantization(learning.lambda_, bit_budgets.get(name, 0.0))
+        quantization = Quantization(learning.lambda_, bit_budgets.get(name, 0.0), budget.rounding)
         task = _task(sets, name, spec, schedule, config)
-        tasks.append(replace(task, quantization=quantization))
+        expected = math.inf
+        if steps > config.loop.least_to_judge * config.probe_steps:
+            expected = foreseen(errors[name], learning.probe_hidden, spec.hidden)
+        tasks.append(replace(task, quantization=quantization, foreseen=expected))
     return tasks
 
 

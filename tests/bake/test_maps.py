@@ -15,6 +15,7 @@ from nispcodec.core.errors import MeshError
 from nispcodec.core.slots import SLOTS
 from nispcodec.model import NispModel
 from tests import tiny
+from tests.tiny import field_of, varied
 
 EVERY = {slot: TextureMap(0, strength=0.5) for slot in SLOTS}
 
@@ -22,9 +23,11 @@ EVERY = {slot: TextureMap(0, strength=0.5) for slot in SLOTS}
 def model(*materials: Material, texel: Any = (204, 102, 255), has_uv: Any = True) -> NispModel:
     """Two charts beside each other, left and right, of the first and the second material."""
     plain = tiny.document()
-    charts = ChartTable(plain.charts.materials, np.broadcast_to(np.array(has_uv), 2).copy())
+    charts = ChartTable(
+        field_of(plain).charts.materials, np.broadcast_to(np.array(has_uv), 2).copy()
+    )
     image = tiny.png(np.array([[texel]], np.uint8))
-    return NispModel(replace(plain, charts=charts, materials=materials, textures=(image,)))
+    return NispModel(varied(plain, charts=charts, materials=materials, textures=(image,)))
 
 
 def ask(asked: NispModel) -> tuple[Float64Array, TangentFrames]:

@@ -1,12 +1,13 @@
 from __future__ import annotations
 
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from nispcodec.bake.unwrap import unwrap
+from nispcodec.bake.unwrap import unwrap, with_collapsed_named
 from nispcodec.core.asset import TexturedMesh
 from nispcodec.core.errors import NispError
 from nispcodec.geometry.charts import split_charts
@@ -15,6 +16,7 @@ from tests.geometry.shapes import cube as cube_triangles
 from tests.geometry.shapes import soup
 from tests.io.files import image, load_obj
 
+TRIANGLE = TexturedMesh.geometry_only(np.eye(3), np.arange(3)[None], "m")
 CUBE = (
     "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\n"
     "mtllib a.mtl\nusemtl red\nf 1 4 3 2\nf 5 6 7 8\nf 1 2 6 5\n"
@@ -62,3 +64,12 @@ def test_small_parts_beside_large_ones_get_an_area() -> None:
     uvs = unwrap(soup(corners)).corner_uvs
     a, b = uvs[:, 1] - uvs[:, 0], uvs[:, 2] - uvs[:, 0]
     assert (np.abs(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]) > 0).all()
+
+
+def test_faces_without_an_area_in_the_atlas_are_counted() -> None:
+    (warning,) = with_collapsed_named(TRIANGLE).warnings
+    assert warning.startswith("unwrapping: 1 of 1 faces got no area in the atlas")
+    laid = replace(TRIANGLE, uvs=np.eye(3)[:, :2].copy(), uv_faces=TRIANGLE.faces)
+    assert with_collapsed_named(laid).warnings == ()
+    line = replace(TRIANGLE, positions=np.array([[0.0, 0, 0], [1, 0, 0], [2, 0, 0]]))
+    assert with_collapsed_named(line).warnings == ()

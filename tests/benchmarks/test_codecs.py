@@ -9,6 +9,7 @@ import pytest
 pytest.importorskip("DracoPy", reason="peers: extra `bench`")
 
 import nispcodec
+from benchmarks.assets import simplify_update
 from benchmarks.assets.corners import corners_of
 from benchmarks.assets.simplify import simplified
 from benchmarks.assets.source import Source
@@ -42,6 +43,11 @@ EXPECTED: dict[str, tuple[Setting, float, float]] = {
     "glb": ({}, 1e-6, 1e-3),
     "draco": ({"qp": 11, "qt": 10}, 5e-4, 2e-3),
     "simplified_draco": ({"surface": "all", "kept": 0.5, "qp": 11, "qt": 10}, 3e-3, 2e-2),
+    "simplified_update_draco": (
+        {"surface": "all", "kept": 0.5, "qp": 11, "qt": 10, "uv_weight": 10.0},
+        3e-3,
+        2e-2,
+    ),
     "gltfpack": ({"compression": "cc", "vp": 14, "vt": 12}, 1e-4, 1e-3),
 }
 
@@ -51,6 +57,7 @@ def test_what_comes_back_is_as_close_as_the_bits_allow(name: str, source: Source
     setting, distance, uv = EXPECTED[name]
     coder = codec(name)
     try:
+        coder.settings(source, quick=True)
         data = coder.encode(source, setting)
     except Unavailable as why:
         pytest.skip(str(why))  # The adapter names the tool that this machine lacks.
@@ -94,7 +101,35 @@ def test_gltfpack_tells_when_it_is_missing(source: Source, monkeypatch: pytest.M
         gltfpack.settings(source, quick=False)
 
 
-@pytest.mark.parametrize("name", sorted(set(CODECS) - {"gltfpack"}))
+def test_moving_vertices_tell_what_is_missing(
+    source: Source, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    moving = codec("simplified_update_draco")
+    monkeypatch.setattr("shutil.which", lambda name: "/usr/bin/node")
+    monkeypatch.setattr(simplify_update, "PACKAGE", tmp_path)
+    with pytest.raises(Unavailable, match=r"npm install meshoptimizer@1.3.0"):
+        moving.settings(source, quick=False)
+    (tmp_path / "package.json").write_text('{"version": "1.2.0"}')
+    with pytest.raises(Unavailable, match=r"expected meshoptimizer 1.3.0 in .*, found 1.2.0"):
+        moving.settings(source, quick=False)
+    monkeypatch.setattr("shutil.which", lambda name: None)
+    with pytest.raises(Unavailable, match="node is not installed"):
+        moving.settings(source, quick=False)
+
+
+def test_every_weight_has_every_count(
+    source: Source, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    pytest.importorskip("meshoptimizer", reason="extra `simplify`")
+    (tmp_path / "package.json").write_text('{"version": "1.3.0"}')
+    monkeypatch.setattr("shutil.which", lambda name: "/usr/bin/node")
+    monkeypatch.setattr(simplify_update, "PACKAGE", tmp_path)
+    settings = codec("simplified_update_draco").settings(source, quick=True)
+    assert {setting["uv_weight"] for setting in settings} == {1.0, 10.0, 100.0}
+    assert len({str(setting) for setting in settings}) == len(settings)
+
+
+@pytest.mark.parametrize("name", sorted(set(CODECS) - {"gltfpack", "simplified_update_draco"}))
 def test_a_quick_run_has_fewer_settings(name: str, source: Source) -> None:
     if name == "simplified_draco":
         pytest.importorskip("meshoptimizer", reason="extra `simplify`")

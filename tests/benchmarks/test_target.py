@@ -12,7 +12,7 @@ from benchmarks.measuring.result_file import Record
 from benchmarks.measuring.target import Asked, Target, asked_of_each
 from benchmarks.paper import pictures as paper_pictures
 from benchmarks.rate_distortion import command
-from benchmarks.studies import decoder, format, rounding_loss
+from benchmarks.studies import decoder, format, mesh_queries, rounding_loss
 
 RECORD = {"bytes": 50, "charts": {"accuracy": 0.98}}
 
@@ -48,6 +48,7 @@ RESULTS: list[tuple[ModuleType, Record, int]] = [
     (decoder, {"queries_8x64": {"plain": {}}, "assets": {"boombox": {}}}, 3 + 14),
     (format, {"files": {"10 kB": {"materials": 1}, "two": {"materials": 2}}}, 3),
     (rounding_loss, {"assets": {"spot": {}}}, 3),
+    (mesh_queries, {"points": {"in the cube": {}}}, 1),
     (paper_pictures, {"assets": {"spot": {"charts": 2}, "plain": {"charts": 1}}}, 2),
 ]
 

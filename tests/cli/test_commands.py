@@ -191,3 +191,39 @@ def test_errors_of_the_program_itself_are_not_hidden(
     monkeypatch.setattr("nispcodec.format.unpack", broken)
     with pytest.raises(AssertionError):
         CliRunner().invoke(group, ["info", str(model)], catch_exceptions=False)
+
+
+PEAK = """
+import resource, sys
+from nispcodec_cli import main
+try:
+    main(["query", *sys.argv[1:]])
+finally:
+    print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss)
+"""
+
+
+def query_peak(model: Path, folder: Path, points: int) -> int:
+    """Bytes that a query takes, with its program."""
+    np.save(folder / "p.npy", np.zeros((points, 3)))
+    command = [sys.executable, "-c", PEAK, model, folder / "p.npy", "-o", folder / "o.npz"]
+    run = subprocess.run([*map(str, command), "--force"], capture_output=True, text=True)
+    assert run.returncode == 0, run.stderr
+    return int(run.stdout.split()[-1]) * 1024
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(sys.platform != "linux", reason="peaks are told in other units elsewhere")
+def test_ten_million_queries_fit_into_a_gigabyte(model: Path, tmp_path: Path) -> None:
+    few, many = (query_peak(model, tmp_path, points) for points in (10, 3_000_000))
+    assert few + (many - few) * 10 / 3 < 1e9
+
+
+def test_csv_of_several_parts(model: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("nispcodec_cli.query.PART", 2)
+    (tmp_path / "p.csv").write_text("x,y,z\n" + "1,2,3\n\n2.5,2,3\n" * 3)
+    assert nisp("query", model, tmp_path / "p.csv", "-o", tmp_path / "o.csv").exit_code == 0
+    rows = np.genfromtxt(tmp_path / "o.csv", delimiter=",", names=True)
+    np.testing.assert_allclose(rows["x"], [1, 2.5] * 3)
+    expected = NispModel(tiny.document()).color(np.tile(POINTS, (3, 1)))
+    np.testing.assert_allclose(rows["green"], expected[:, 1], rtol=1e-6)

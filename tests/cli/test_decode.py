@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+import re
+from functools import partial
 from pathlib import Path
 
 import numpy as np
 import pytest
 import trimesh
+from nispcodec_cli.decode import free_memory
 
+from nispcodec.extract.config import ResolutionConfig
 from nispcodec.io.load import load_mesh
 from nispcodec.model import NispModel
 from tests.cli.conftest import done, nisp, refused
@@ -84,3 +88,33 @@ def test_it_says_bytes_seconds_faces_and_how_to_get_fewer(model: Path, tmp_path:
 def test_who_asked_for_fewer_is_not_told_how(model: Path, tmp_path: Path) -> None:
     result = done("decode", model, "-o", tmp_path / "out.glb", "--resolution", 24, "--faces", 90)
     assert "--faces" not in result.stdout
+
+
+def test_a_fine_grid_says_what_it_will_take(
+    model: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(
+        "nispcodec.extract.config.ResolutionConfig", partial(ResolutionConfig, most=30)
+    )
+    out = tmp_path / "a.ply"
+    result = nisp("decode", model, "--resolution", "64", "-o", out, "--progress", "plain")
+    assert result.exit_code == 0, result.output
+    assert re.search(r"resolution 64: about [\d,]+ faces and 0\.0 GB of memory", result.stderr)
+    result = nisp("decode", model, "--resolution", "30", "-o", out, "--force")
+    assert "of memory" not in result.stderr
+
+
+def test_a_grid_that_does_not_fit_into_memory_is_refused(
+    model: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("nispcodec_cli.decode.free_memory", lambda: 10**8)
+    result = nisp("decode", model, "--resolution", "2048", "-o", tmp_path / "a.ply")
+    assert result.exit_code == 2
+    (suggested,) = re.findall(r"GB free: --resolution (\d+) fits", result.stderr)
+    assert 100 < int(suggested) < 2048
+    assert not (tmp_path / "a.ply").exists()
+
+
+def test_how_much_memory_is_free_is_known_on_linux() -> None:
+    free = free_memory()
+    assert free is None or 10**6 < free < 10**14

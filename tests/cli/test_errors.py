@@ -52,7 +52,7 @@ def asked(command: str, path: str) -> tuple[str, ...]:
         (b"\n\n\n", "this is no .nisp file"),
         (b"\xff\xfe", "this is no .nisp file"),
         (b"", "this is no .nisp file: expected some bytes, found an empty file"),
-        (b"\x89NS", "section header, field file length"),
+        (b"\x89NS", "section header, field file_length"),
     ],
 )
 def test_what_is_no_nisp_is_told_in_words(

@@ -10,10 +10,12 @@ import pytest
 from nispcodec_cli import COMMANDS
 
 from tests import tiny
+from tests.catalogue.stubs import quick, with_stub
 from tests.cli.conftest import done, nisp
 
 CALLS: dict[str, tuple[object, ...]] = {
     "encode": ("ball.obj", "-o", "ball.nisp"),
+    "batch": ("ball.obj", "-o", "catalogue", "--thumbnail", 0),
     "decode": ("tiny.nisp", "-o", "out.obj", "--resolution", 16),
     "render": ("tiny.nisp", "-o", "t.png", "--size", 16, "--turntable", 2),
     "sheet": ("ball.obj", "ball.obj", "-o", "s.png", "--size", 32),
@@ -28,12 +30,17 @@ CALLS: dict[str, tuple[object, ...]] = {
 }
 
 
+# One object for each asset and one for the end: a million of them are no document.
+STREAMED = ("batch",)
+
+
 @pytest.fixture(autouse=True)
 def folder(
     encoder: Any, model: Path, mesh: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> Path:
     """The working folder, with all that the CALLS read."""
     encoder(tiny.document())
+    with_stub(monkeypatch, quick)
     (tmp_path / "ball_sphere.png").write_bytes(tiny.document().textures[0].data)
     (tmp_path / "points.csv").write_text("1,2,3\n2,2,3\n")
     monkeypatch.chdir(tmp_path)
@@ -48,9 +55,16 @@ def test_every_command_is_called_here() -> None:
     assert set(CALLS) == set(COMMANDS)
 
 
-@pytest.mark.parametrize("command", COMMANDS)
+@pytest.mark.parametrize("command", [each for each in COMMANDS if each not in STREAMED])
 def test_the_output_is_one_json_object_and_nothing_else(command: str) -> None:
     assert isinstance(told(command), dict)
+
+
+@pytest.mark.parametrize("command", STREAMED)
+def test_the_output_is_a_json_object_a_line(command: str) -> None:
+    lines = done(command, *CALLS[command], "--json").stdout.splitlines()
+    assert all(isinstance(json.loads(line), dict) for line in lines)
+    assert len(lines) == 2
 
 
 @pytest.mark.parametrize("command", COMMANDS)

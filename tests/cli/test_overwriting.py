@@ -182,3 +182,10 @@ def test_a_file_in_place_of_the_folder_is_named(folder: Path, command: tuple[str
     refused(nisp(*command, "-o", "taken"), "taken: expected a folder to write into, found a file")
     refused(nisp(*command, "-o", "taken/deeper"), "expected a folder to write into, found a file")
     assert (folder / "taken").read_bytes() == MINE
+
+
+def test_images_of_one_name_are_unpacked_side_by_side(folder: Path) -> None:
+    alike = Path(__file__).parents[1] / "conformance" / "textures-two-alike.nisp"
+    (folder / "alike.nisp").write_bytes(alike.read_bytes())
+    done("unpack", "alike.nisp", "-o", "images")
+    assert sorted(contents(folder / "images")) == ["twin-2.png", "twin.png"]

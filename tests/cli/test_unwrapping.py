@@ -1,12 +1,13 @@
 from __future__ import annotations
 
+import multiprocessing.synchronize
 import os
 import signal
 from dataclasses import replace
 
 import numpy as np
 import pytest
-from nispcodec_cli.unwrapping import apart, with_collapsed_named
+from nispcodec_cli.unwrapping import apart
 
 from nispcodec.core.asset import TexturedMesh
 from nispcodec.core.errors import MeshError, NispError
@@ -38,10 +39,9 @@ def test_results_and_errors_come_back() -> None:
         apart(refuse, MESH)
 
 
-def test_faces_without_an_area_in_the_atlas_are_counted() -> None:
-    (warning,) = with_collapsed_named(MESH).warnings
-    assert warning.startswith("unwrapping: 1 of 1 faces got no area in the atlas")
-    laid = replace(MESH, uvs=np.eye(3)[:, :2].copy(), uv_faces=MESH.faces)
-    assert with_collapsed_named(laid).warnings == ()
-    line = replace(MESH, positions=np.array([[0.0, 0, 0], [1, 0, 0], [2, 0, 0]]))
-    assert with_collapsed_named(line).warnings == ()
+def test_no_shared_memory_is_needed(monkeypatch: pytest.MonkeyPatch) -> None:
+    def full(*_: object, **__: object) -> None:
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(multiprocessing.synchronize.SemLock, "__init__", full)
+    assert apart(renamed, MESH).name == "other"

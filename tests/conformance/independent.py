@@ -1,6 +1,7 @@
-"""A reader made of `format_spec.md` alone: its Python blocks, its tables, and MessagePack.
+"""A reader made of `format_spec.md` alone: its Python blocks, its tables, its words.
 
-Nothing of nispcodec is imported: what the specification leaves open shows here.
+Nothing of nispcodec is imported: what the specification leaves open shows here. A file that must be
+refused raises an exception of any kind.
 """
 
 from __future__ import annotations
@@ -8,17 +9,18 @@ from __future__ import annotations
 from io import BytesIO
 from typing import Any
 
-import msgpack
 import numpy as np
 import zstandard
 from PIL import Image
 
+from tests.conformance import independent_meta
 from tests.format import spec
 
 DECODER = spec.decoder()
-ENUMERATIONS = ("ENCODINGS", "CONDITIONINGS", "ACTIVATIONS", "OUTPUTS", "WRAPS", "FILTERS")
-NUMBERED = {name: spec.enumeration(name) for name in ENUMERATIONS}
-WHITE = [1.0, 1.0, 1.0, 1.0]
+CAPS = independent_meta.CAPS
+NETWORKS = ("sdf", "chart", "uv")
+KNOWN = ("META", "NETS", "TXTR")
+FORMATS = ("PNG", "JPEG", "WEBP", "AVIF")
 
 
 class Reader:
@@ -26,114 +28,120 @@ class Reader:
 
     def __init__(self, file: bytes) -> None:
         rows = {row[0]: row for row in DECODER["read_table"](file)}
-        meta = msgpack.unpackb(unpacked(rows["META"]), strict_map_key=False)
-        self.k = meta.get(3, 1)
-        self.frame = meta[1]
-        self.materials = meta.get(7, [{}])
-        self.chart_materials = numbers(meta.get(4), self.k, len(self.materials))
-        self.has_uv = flags(meta.get(5), self.k)
-        self.uv_map = meta.get(6, [0.0, 0.0, 1.0, 1.0])
-        self.specs = {number: topology(fields) for number, fields in sorted(meta[2].items())}
-        tensors = [(self.shapes(number), made["init_seed"]) for number, made in self.specs.items()]
+        check_sections(rows)
+        self.meta = independent_meta.read_document(unpacked(rows["META"]))
+        assert ("TXTR" in rows) == bool(self.meta["textures"])
+        self.k = self.meta["charts"]
+        self.specs: dict[str, Any] = self.meta["networks"]
+        tensors = [(self.shapes(name), made["init_seed"]) for name, made in self.specs.items()]
+        assert sum(r * c for shapes, _ in tensors for r, c in shapes) <= CAPS["MAX_WEIGHTS"]
         weights = DECODER["read_nets"](unpacked(rows["NETS"]), tensors)
         self.weights = dict(zip(self.specs, weights, strict=True))
-        self.images = images(meta.get(8, []), unpacked(rows["TXTR"]) if "TXTR" in rows else b"")
+        self.files = images(
+            self.meta["textures"], unpacked(rows["TXTR"]) if "TXTR" in rows else b""
+        )
+        self.decoded: dict[int, Any] = {}
 
-    def shapes(self, number: int) -> list[tuple[int, int]]:
+    def shapes(self, name: str) -> list[tuple[int, int]]:
         """Rows and columns of a network's tensors (section 5)."""
-        made = self.specs[number]
-        coordinates = 3 + (made["mirror"] >> 3).bit_count() + (made["conditioning"] == "scalar")
-        inputs = coordinates * (2 * made["levels"] if made["encoding"] == "fourier" else 1)
-        widths = [inputs + made["embedding"], *made["hidden"], (1, self.k, 2)[number - 1]]
-        outputs = widths[-1]
-        table = {
-            "embedding": [made["embedding"]],
-            "chart_affine": [made["embedding"], outputs * coordinates, outputs],
-        }.get(made["conditioning"], [])
+        made = self.specs[name]
+        coordinates = 3 + (made["mirror"] >> 3).bit_count()
+        entering = coordinates + (made["conditioning"] == "scalar")
+        inputs = entering * (2 * made["levels"] if made["encoding"] == "fourier" else 1)
+        outputs = {"sdf": 1, "chart": self.k, "uv": 2}[name]
+        widths = [inputs + made["embedding"], *made["hidden"], outputs]
+        table = [made["embedding"], outputs * coordinates, outputs]
+        affine = made["conditioning"] == "chart_affine"
         layers = zip(widths[1:], widths[:-1], strict=True)
-        return [(self.k, columns) for columns in table] + [
+        return [(self.k, columns) for columns in table if affine] + [
             shape for rows, columns in layers for shape in ((rows, columns), (1, rows))
         ]
 
-    def ask(self, number: int, point: list[float], chart: int = 0) -> list[float]:
+    def ask(self, name: str, point: list[float], chart: int = 0) -> list[float]:
         """Outputs of a network."""
-        made, weights = self.specs[number], self.weights[number]
+        made, weights = self.specs[name], self.weights[name]
         answer: list[float] = DECODER["evaluate"](made, self.k, weights, point, chart)
         return answer
 
-    def chart(self, point: list[float]) -> int:
-        """The largest logit, of equal ones the first."""
-        logits = self.ask(2, point) if 2 in self.specs else [0.0]
-        return logits.index(max(logits))
+    def distance(self, point: list[float]) -> float:
+        """The signed distance, normalized frame."""
+        return self.ask("sdf", point)[0]
+
+    def chart(self, point: list[float], closed: int = 0) -> int:
+        """The largest logit but for the last `closed`, of equal ones the first; 0 with a NaN."""
+        logits = self.ask("chart", point) if "chart" in self.specs else [0.0]
+        largest: int = DECODER["largest"](logits[: self.k - closed])
+        return largest
 
     def uv(self, point: list[float], chart: int) -> list[float]:
         """The place in the asset's UV."""
-        if not self.has_uv[chart]:
+        if not self.meta["chart_has_uv"][chart]:
             return [0.0, 0.0]
-        u, v = self.ask(3, point, chart)
-        left, low, wide, high = self.uv_map
+        u, v = self.ask("uv", point, chart)
+        left, low, wide, high = self.meta["uv_map"]
         return [u * wide + left, v * high + low]
 
-    def color(self, uv: list[float], chart: int) -> list[float]:
-        """RGBA."""
-        material = self.materials[self.chart_materials[chart]]
-        used = material.get(9, {}).get(1)
+    def color(self, point: list[float]) -> list[float]:
+        """RGBA: that of the likeliest chart that is no opening."""
+        chart = self.chart(point, int(self.meta["openings"]))
+        return self.color_at(self.uv(point, chart), chart)
+
+    def color_at(self, uv: list[float], chart: int) -> list[float]:
+        """RGBA at a UV of a chart."""
+        material = self.meta["materials"][self.meta["chart_materials"][chart]]
+        used = material["maps"].get("base_color")
         texels = None
-        if used is not None and self.has_uv[chart]:
-            wraps = [NUMBERED["WRAPS"][used.get(key, 1) - 1] for key in (2, 3)]
-            image, sharp = self.images[used.get(1, 0)], NUMBERED["FILTERS"][used.get(4, 1) - 1]
-            texels = DECODER["look_up"](image, *uv, *wraps, sharp)
-        found: list[float] = DECODER["color"](material.get(2, WHITE), texels)
+        if used is not None and self.meta["chart_has_uv"][chart]:
+            wraps = used["wrap_u"], used["wrap_v"]
+            texels = DECODER["look_up"](self.image(used["texture"]), *uv, *wraps, used["filter"])
+        found: list[float] = DECODER["color"](material["base_color"], texels)
         return found
+
+    def image(self, number: int) -> Any:
+        """RGBA in [0, 1] of a texture, row by row."""
+        if number not in self.decoded:
+            self.decoded[number] = pixels(self.files[number])
+        return self.decoded[number]
+
+
+def check_sections(rows: dict[str, Any]) -> None:
+    """Which sections there must be and may be."""
+    assert "META" in rows
+    assert "NETS" in rows
+    for code, critical, *_ in rows.values():
+        assert critical == (code in KNOWN)
+    packed = sum(row[4] for row in rows.values() if row[2])
+    assert packed <= CAPS["MAX_UNPACKED"]
 
 
 def unpacked(row: tuple[str, bool, bool, bytes, int]) -> bytes:
     """The content of a section."""
     _, _, packed, payload, length = row
     if packed:
-        assert zstandard.get_frame_parameters(payload).content_size == length
-        payload = zstandard.ZstdDecompressor().decompress(payload, allow_extra_data=False)
+        frame = zstandard.get_frame_parameters(payload)
+        assert frame.content_size == length
+        assert frame.dict_id == 0
+        unpack = zstandard.ZstdDecompressor().decompress
+        payload = unpack(payload, max_output_size=length, allow_extra_data=False)
     assert len(payload) == length
     return payload
 
 
-def topology(fields: dict[int, Any]) -> dict[str, Any]:
-    """A network's fields by name, defaults filled in."""
-    return {
-        "hidden": fields[1],
-        "encoding": NUMBERED["ENCODINGS"][fields.get(2, 1) - 1],
-        "levels": fields.get(3, 0),
-        "conditioning": NUMBERED["CONDITIONINGS"][fields.get(4, 1) - 1],
-        "embedding": fields.get(5, 0),
-        "activation": NUMBERED["ACTIVATIONS"][fields.get(6, 1) - 1],
-        "w0": fields.get(7, 30.0),
-        "output": NUMBERED["OUTPUTS"][fields.get(8, 1) - 1],
-        "mirror": fields.get(9, 0),
-        "init_seed": fields.get(10, 0),
-    }
-
-
-def numbers(data: bytes | None, count: int, materials: int) -> list[int]:
-    """The material of each chart."""
-    if data is None:
-        return [0] * count
-    return np.frombuffer(data, "u1" if materials <= 256 else "<u2", count).tolist()
-
-
-def flags(data: bytes | None, count: int) -> list[bool]:
-    """Which charts have texture coordinates."""
-    if data is None:
-        return [True] * count
-    return [bool(data[place // 8] & 0x80 >> place % 8) for place in range(count)]
-
-
-def images(described: list[dict[int, Any]], data: bytes) -> list[Any]:
-    """RGBA in [0, 1] of every texture, row by row."""
+def images(described: list[dict[str, Any]], data: bytes) -> list[bytes]:
+    """The file of every texture."""
     found, at = [], 0
     for each in described:
-        length = each.get(3, len(data) - at)
-        image = Image.open(BytesIO(data[at : at + length])).convert("RGBA")
-        found.append((np.asarray(image, np.float64) / 255).tolist())
+        length = len(data) - at if each["length"] is None else each["length"]
+        assert 0 < length <= len(data) - at
+        found.append(data[at : at + length])
         at += length
-    assert at == len(data)
     return found
+
+
+def pixels(file: bytes) -> Any:
+    """RGBA in [0, 1] of an image as stored, row by row."""
+    image = Image.open(BytesIO(file), formats=FORMATS)
+    if image.mode.startswith("I"):
+        gray = np.asarray(image, np.float64)[..., None] / 65535
+        return np.concatenate([gray, gray, gray, np.ones_like(gray)], axis=2).tolist()
+    return (np.asarray(image.convert("RGBA"), np.float64) / 255).tolist()

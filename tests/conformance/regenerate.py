@@ -6,58 +6,75 @@ Without `--replace` it only adds what is missing: the committed bytes must decod
 from __future__ import annotations
 
 import json
+import math
 import sys
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from nispcodec.core.arrays import AnyArray, BoolArray, Float32Array
+from nispcodec.core.arrays import BoolArray, Float32Array
 from nispcodec.core.document import Frame
-from nispcodec.core.texture import decode_image
 from nispcodec.format import unpack
 from nispcodec.infer.evaluate import evaluate
 from nispcodec.model import NispModel
+from tests.conformance.described import described
 from tests.conformance.features import features
+from tests.conformance.independent import Reader
 from tests.conformance.malformed import all_malformed
 
 HERE = Path(__file__).parent
 TOLERANCE = {"sdf": 1e-4, "uv": 1e-4, "color": 0.01, "logit_margin": 1e-3}
 POINTS = 8
-DIGITS = 8
+DIGITS = 9
+GRID = 1024
 
 
 def answers(data: bytes) -> dict[str, Any]:
-    """What the reference says about a file, at points where no rounding can turn the answer."""
-    document = unpack(data)
-    model = NispModel(document)
-    points = np.random.default_rng(7).uniform(-0.8, 0.8, (400, 3)).round(3).astype(np.float32)
-    points = points[_steady(model, points)][:POINTS]
-    found: dict[str, AnyArray] = {
-        "points": points,
-        "sdf": model.sdf(points, "normalized"),
-        "chart": model.charts(points, "normalized"),
-        "uv": model.uv(points, "normalized"),
-        "color": model.color(points, "normalized"),
+    """What the specification says about a file, in float64, at points that no rounding can turn.
+
+    Points are multiples of 1 / GRID, which every float holds.
+    """
+    reader, frame = Reader(data), unpack(data).frame
+    points = np.rint(np.random.default_rng(7).uniform(-0.8, 0.8, (400, 3)) * GRID) / GRID
+    points = points[_steady(reader, NispModel(unpack(data)), points.astype(np.float32))][:POINTS]
+    charts = [reader.chart(point) for point in points.tolist()]
+    pairs = list(zip(points.tolist(), charts, strict=True))
+    found: dict[str, Any] = {
+        "document": described(reader),
+        "points": points.tolist(),
+        "sdf": [reader.distance(point) for point, _ in pairs],
+        "chart": charts,
+        "uv": [reader.uv(point, chart) for point, chart in pairs],
+        "color": [reader.color(point) for point, _ in pairs],
     }
-    if document.frame != Frame((0.0, 0.0, 0.0), 1.0):
-        world = document.frame.to_world(points)
-        found |= {"world_points": world, "world_sdf": model.sdf(world)}
-    return {name: value.tolist() for name, value in found.items()}
+    if frame != Frame((0.0, 0.0, 0.0), 1.0):
+        world = [distance * frame.radius for distance in found["sdf"]]
+        found |= {"world_points": frame.to_world(points).tolist(), "world_sdf": world}
+    return found
 
 
-def _steady(model: NispModel, points: Float32Array) -> BoolArray:
+def _steady(reader: Reader, model: NispModel, points: Float32Array) -> BoolArray:
     """(n,) bool: clear of borders of charts (or right on one, in a tie) and of texels."""
     steady = np.ones(len(points), np.bool_)
-    if model.document.chart is not None:
-        logits = np.sort(evaluate(model.document.chart, points), axis=1)
+    if "chart" in model.document.networks:
+        logits = np.sort(evaluate(model.document.networks["chart"], points), axis=1)
         margin = logits[:, -1] - logits[:, -2]
-        steady &= (margin > 0.01) | (margin == 0)
-    for texture in model.document.textures:
-        size = decode_image(texture).shape[1::-1]
-        inside = model.uv(points, "normalized") * np.array(size) % 1
-        steady &= (np.abs(inside - 0.5) < 0.48).all(axis=1)
+        steady &= (margin > 0.01) | (margin == 0) | np.isnan(margin)
+    if model.document.textures:
+        steady &= np.array([_clear_of_texels(reader, point) for point in points.tolist()])
     return steady
+
+
+def _clear_of_texels(reader: Reader, point: list[float]) -> bool:
+    """Whether the place in every texture is clear of the middle between two texels, and of them."""
+    chart = reader.chart(point, int(reader.meta["openings"]))
+    uv = reader.uv(point, chart)
+    if not reader.meta["chart_has_uv"][chart] or not all(map(math.isfinite, uv)):
+        return True
+    images = [reader.image(number) for number in range(len(reader.files))]
+    sizes = [(len(image[0]), len(image)) for image in images]
+    return all(abs(t * n % 1 - 0.5) < 0.48 for size in sizes for t, n in zip(uv, size, strict=True))
 
 
 def main(replace: bool) -> None:
@@ -80,8 +97,9 @@ def main(replace: bool) -> None:
 
 
 def _compact(answer: dict[str, Any]) -> str:
-    """One line for each kind of answer, floats but of the world to `DIGITS` digits."""
-    short = {k: v if k == "world_points" else _short(v) for k, v in answer.items()}
+    """One line for each kind of answer, floats of answers to `DIGITS` digits."""
+    whole = ("document", "points", "world_points")
+    short = {k: v if k in whole else _short(v) for k, v in answer.items()}
     rows = [f'"{name}": {json.dumps(value)}' for name, value in short.items()]
     return "{\n" + ",\n".join(rows) + "\n}\n"
 
@@ -89,6 +107,8 @@ def _compact(answer: dict[str, Any]) -> str:
 def _short(value: Any) -> Any:
     if isinstance(value, list):
         return [_short(item) for item in value]
+    if isinstance(value, float) and not math.isfinite(value):
+        return {math.inf: "Infinity", -math.inf: "-Infinity"}.get(value, "NaN")
     return value if isinstance(value, int) else float(f"{value:.{DIGITS}g}")
 
 

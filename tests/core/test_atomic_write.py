@@ -6,6 +6,7 @@ import signal
 import subprocess
 import sys
 import time
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import pytest
@@ -60,3 +61,42 @@ def test_a_path_with_nul_is_an_error_in_words(tmp_path: Path) -> None:
         with pytest.raises(NispError, match="expected a path without NUL"):
             write_atomic(path, b"")
     assert not list(tmp_path.iterdir())
+
+
+def test_what_writes_itself_is_given_the_file(tmp_path: Path) -> None:
+    path = tmp_path / "a"
+    write_atomic(path, lambda file: [file.write(each) for each in (b"one", b"two")])
+    assert path.read_bytes() == b"onetwo"
+
+
+def test_many_writers_of_one_file_leave_one_of_theirs(tmp_path: Path) -> None:
+    path = tmp_path / "a"
+    contents = [bytes([number]) * 200_000 for number in range(8)]
+    with ThreadPoolExecutor(8) as pool:
+        list(pool.map(lambda data: write_atomic(path, data), contents * 3))
+    assert path.read_bytes() in contents
+    assert list(tmp_path.iterdir()) == [path]
+
+
+FULL = """
+import resource, signal, sys
+from pathlib import Path
+from nispcodec.core.atomic_write import write_atomic
+from nispcodec.core.errors import NispError
+resource.setrlimit(resource.RLIMIT_FSIZE, (50_000, 50_000))
+try:
+    write_atomic(Path(sys.argv[1]), bytes(100_000))
+except NispError as error:
+    print(error)
+"""
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="limits of POSIX")
+def test_a_disk_that_is_full_leaves_what_was_there(tmp_path: Path) -> None:
+    path = tmp_path / "a"
+    path.write_bytes(b"before")
+    command = [sys.executable, "-c", FULL, str(path)]
+    run = subprocess.run(command, capture_output=True, text=True, check=True)
+    assert run.stdout == f"{path}: cannot be written: File too large\n"
+    assert path.read_bytes() == b"before"
+    assert list(tmp_path.iterdir()) == [path]

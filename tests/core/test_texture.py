@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import io
+from dataclasses import replace
 
 import numpy as np
 import PIL.Image
@@ -10,7 +11,9 @@ from nispcodec.core.asset import Material, Texture, TextureMap
 from nispcodec.core.errors import MeshError
 from nispcodec.core.texture import (
     base_color,
+    data_maps,
     decode_image,
+    distinct_names,
     image_size,
     linear_to_srgb,
     reencode,
@@ -44,6 +47,12 @@ def test_the_size_is_that_of_the_pixels(kind: str) -> None:
 def test_the_size_of_what_is_no_image() -> None:
     with pytest.raises(MeshError, match=r"broken\.png"):
         image_size(Texture("broken.png", b"no image", "image/png"))
+
+
+def test_names_that_are_taken_get_a_number() -> None:
+    names = ["a.png", "b.png", "A.PNG", "a.png", "a-2.png", "c"]
+    distinct = ["a.png", "b.png", "A-2.PNG", "a-3.png", "a-2-2.png", "c"]
+    assert distinct_names(names) == distinct
 
 
 def test_origin_is_bottom_left() -> None:
@@ -84,6 +93,13 @@ def test_nearest_takes_the_texel_under_the_point() -> None:
     assert sampled(0.49, 0.49, filter="nearest") == 0
     assert sampled(0.51, 0.49, filter="nearest") == 1
     assert sampled(-0.01, 0.51, filter="nearest") == 11
+
+
+@pytest.mark.parametrize("odd", [np.nan, np.inf, -np.inf])
+@pytest.mark.parametrize("filter", ["linear", "nearest"])
+def test_a_coordinate_that_is_not_finite_counts_as_0(odd: float, filter: str) -> None:
+    assert sampled(odd, 0.3, filter=filter) == sampled(0.0, 0.3, filter=filter)
+    assert sampled(0.3, odd, filter=filter) == sampled(0.3, 0.0, filter=filter)
 
 
 def test_uv_far_outside_is_finite() -> None:
@@ -163,3 +179,37 @@ def test_reencoded_images_keep_their_pixels_and_different_names() -> None:
 def test_jpeg_leaves_transparent_images_alone() -> None:
     clear = encoded(PIL.Image.new("RGBA", (4, 4), (1, 2, 3, 100)))
     assert reencode([clear], "jpeg", 90) == (clear,)
+
+
+def fine_normals(size: int = 32) -> Texture:
+    """A normal map of which every other texel leans another way."""
+    rows, columns = np.indices((size, size))
+    pixels = np.full((size, size, 3), 128, np.uint8)
+    pixels[..., 0] += (60 * (columns % 2)).astype(np.uint8)
+    pixels[..., 1] += (60 * (rows % 2)).astype(np.uint8)
+    pixels[..., 2] = 230
+    pixels += np.random.default_rng(0).integers(0, 9, pixels.shape, np.uint8)
+    return encoded(PIL.Image.fromarray(pixels))
+
+
+@pytest.mark.parametrize("kind", ["webp", "avif", "jpeg"])
+def test_data_keep_the_resolution_of_every_channel(kind: str) -> None:
+    texture = fine_normals()
+    before = decode_image(texture)
+    (color,), (data,) = reencode([texture], kind, 95), reencode([texture], kind, 95, {0})
+    errors = [np.abs(decode_image(each) - before).mean() for each in (color, data)]
+    assert errors[1] < 0.35 * errors[0]
+    assert kind != "webp" or errors[1] == 0
+
+
+def test_data_stay_where_lossless_takes_more_bytes() -> None:
+    noisy = PIL.Image.effect_noise((64, 64), 80).convert("RGB")
+    texture = replace(encoded(noisy, "JPEG"), name="t.jpg", mime="image/jpeg")
+    assert reencode([texture], "webp", 90, {0}) == (texture,)
+    assert reencode([texture], "webp", 90)[0].mime == "image/webp"
+
+
+def test_which_textures_are_data() -> None:
+    maps = {"base_color": TextureMap(0), "normal": TextureMap(1), "emissive": TextureMap(3)}
+    shared = {"occlusion": TextureMap(2), "metallic_roughness": TextureMap(3)}
+    assert data_maps([Material(maps=maps), Material(maps=shared)]) == {1, 2, 3}

@@ -43,6 +43,13 @@ def test_choices_that_do(device: str, preset: str) -> None:
     assert EncodeConfig(preset, device=device, texture_quality=100).prunings() == {}
 
 
+def test_a_short_fit_gets_fewer_samples() -> None:
+    tuning = Tuning()
+    fast, balanced = (tuning.sampling_of(preset) for preset in ("fast", "balanced"))
+    assert fast.tight_count < balanced.tight_count == tuning.sampling.tight_count
+    assert tuning.sampling_of("paper") == tuning.sampling
+
+
 def test_only_the_paper_keeps_its_charts_apart() -> None:
     tuning = Tuning()
     assert tuning.geometry_of("paper").merging is None

@@ -35,7 +35,10 @@ def curtain() -> TexturedMesh:
 def test_an_open_sheet_in_two_charts_is_fitted() -> None:
     mesh, told = curtain(), list[Progress]()
 
-    config, tuning = EncodeConfig("fast"), small(20_000, 1500, 2, 500, 300, lambda_=1e-6)
+    config, tuning = (
+        EncodeConfig("fast", geometry="field"),
+        small(20_000, 1500, 2, 500, 300, lambda_=1e-6),
+    )
     info = nispcodec.encode(mesh, config, told.append, tuning).document.info
     assert len(mesh.faces) == 9000
     assert not any(update.warning and update.network for update in told)

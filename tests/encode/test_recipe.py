@@ -11,15 +11,17 @@ import pytest
 
 import nispcodec
 from nispcodec import EncodeConfig, NispError, NispModel, TexturedMesh
+from nispcodec.core.cores import cores
 from nispcodec.core.errors import FitError
 from nispcodec.core.progress import Listener, Progress, silent
-from nispcodec.core.texture import reencode
+from nispcodec.core.texture import data_maps, reencode
 from nispcodec.edit.texture_padding import with_padded_textures
 from nispcodec.encode.config import PRESETS
 from nispcodec.format import pack, unpack
 from nispcodec.procedural.mug import sample_asset
 from tests.encode.tunings import small
 from tests.geometry.shapes import box_asset, cube, soup
+from tests.tiny import field_of
 
 pytestmark = pytest.mark.slow
 SHORT = small(3000, 60, 1, 100, 30, lambda_=1e-6)
@@ -28,6 +30,8 @@ SHORT = small(3000, 60, 1, 100, 30, lambda_=1e-6)
 def encode(
     mesh: TexturedMesh, config: EncodeConfig | None = None, progress: Listener = silent
 ) -> NispModel:
+    """As networks: what is a choice of forms is tested beside its code."""
+    config = replace(config or EncodeConfig(), geometry="field")
     return nispcodec.encode(mesh, config, progress, SHORT)
 
 
@@ -60,7 +64,7 @@ def test_a_mesh_without_uv_is_geometry_alone() -> None:
 def test_materials_survive_without_uv() -> None:
     document = encode(bare(box_asset())).document
     assert list(document.networks) == ["sdf", "chart"]
-    assert document.charts.materials.tolist() == [0, 1]
+    assert field_of(document).charts.materials.tolist() == [0, 1]
 
 
 def test_the_same_input_and_seed_give_the_same_bytes(tmp_path: Path) -> None:
@@ -93,7 +97,8 @@ def test_textures_stay_are_padded_reencoded_or_left_out() -> None:
         for options in ({}, {"pad_textures": True, "texture_format": "webp"}, {"textures": False})
     )
     assert kept.textures == mesh.textures
-    assert smaller.textures == reencode(with_padded_textures(mesh, 100), "webp", 90)
+    data = data_maps(mesh.materials)
+    assert smaller.textures == reencode(with_padded_textures(mesh, 100), "webp", 90, data)
     assert {texture.mime for texture in smaller.textures} == {"image/webp"}
     assert smaller.materials == mesh.materials
     assert none.textures == ()
@@ -146,3 +151,9 @@ def test_faces_the_wrong_way_round_are_told_of() -> None:
     (warning,) = filter(None, told)
     assert "turned faces" in warning
     assert "16.67% of the area" in warning
+
+
+def test_all_stages_have_as_many_cores_as_asked() -> None:
+    seen = set()
+    encode(box_asset(), EncodeConfig(threads=1), lambda _: seen.add(cores()))
+    assert seen == {1}

@@ -57,7 +57,7 @@ def test_a_real_encode_goes_from_0_to_nearly_1_and_never_back(config: EncodeConf
 
 def test_each_stage_before_the_fit_is_further_than_the_one_before() -> None:
     stages = [Progress(stage=stage) for stage in StageSeconds().before]
-    half = Progress(stage="probe how much there is to learn", step=1, steps=2)
+    half = Progress(stage="triangles", step=1, steps=2)
     shares = overall([*stages, half, fit("sdf", 0.1)])
     assert shares == sorted(set(shares))
 

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from nispcodec import Material, NispError
-from nispcodec.core.document import ChartTable, Document, Frame
+from nispcodec.core.document import ChartTable, Document, Field, Frame
 from nispcodec.core.errors import FitError
 from nispcodec.core.network import Network
 from nispcodec.core.progress import Listener, Progress, silent
@@ -61,7 +61,11 @@ def fitting(fit: Fit = by_law, listen: Listener = silent) -> FitContext:
 
 def document(networks: Mapping[str, Network]) -> Document:
     frame = Frame((0.0, 0.0, 0.0), 1.0)
-    return Document(frame, TABLE, (Material("one"),), (), sdf=networks["sdf"])
+    return Document(frame, (Material("one"),), (), Field(TABLE, networks["sdf"]))
+
+
+def always(size: float, probe_error: float) -> bool:
+    return True
 
 
 @pytest.mark.slow
@@ -109,7 +113,9 @@ def test_the_probe_decides_the_width() -> None:
     def easier(tasks: list[Task], listen: Listener) -> Networks:
         return by_law(tasks, lambda update: listen(replace(update, error=update.error / 2)))
 
-    widths = [fit_with_preset(fitting(fit))["sdf"].spec.hidden[0] for fit in (by_law, easier)]
+    widths = [
+        fit_with_preset(fitting(fit), always)["sdf"].spec.hidden[0] for fit in (by_law, easier)
+    ]
     assert widths[0] > widths[1]
 
 
@@ -118,3 +124,16 @@ def test_the_last_try_is_kept_even_if_it_is_too_good() -> None:
     config = replace(context.problem.config, target=TargetConfig(rounds=1))
     once = replace(context, problem=replace(context.problem, config=config))
     assert "sdf" in fit_to_error(once, 1e-3)
+
+
+def test_networks_that_are_not_wanted_are_not_fitted() -> None:
+    told: list[tuple[float, float]] = []
+
+    def never(size: float, probe_error: float) -> bool:
+        told.append((size, probe_error))
+        return False
+
+    assert fit_with_preset(fitting(), never) == {}
+    ((size, error),) = told
+    assert 100 < size < 100_000
+    assert 0 < error < 1

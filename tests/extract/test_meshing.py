@@ -8,12 +8,13 @@ import numpy as np
 import pytest
 
 from nispcodec.core.network import Network
-from nispcodec.extract.config import ResolutionConfig
-from nispcodec.extract.isosurface import near_surface
+from nispcodec.extract.config import ResolutionConfig, SimplifyConfig
+from nispcodec.extract.isosurface import Surface, near_surface
 from nispcodec.extract.meshing import default_resolution
 from nispcodec.extract.thin_walls import thin_share
 from nispcodec.model import NispModel
 from tests import tiny
+from tests.tiny import field_of, varied
 
 
 def plate(thickness: float) -> Network:
@@ -41,11 +42,11 @@ def test_islands_in_a_membrane_go_with_it() -> None:
     # Chart 1, an opening, where x > 0, but for the tip, which the network gives to chart 0.
     rows = np.array([[-1.0, 0, 0], [1.0, 0, 0], [1.0, 0, 0]]), np.array([0, 0, -0.792])
     last = np.array([[1.0, 0, 1000], [0, 1, 0]]), np.zeros(2)
-    chart, table = tiny.relu_network([rows, last]), tiny.document().charts
+    chart, table = tiny.relu_network([rows, last]), field_of(tiny.document()).charts
     opened = replace(table, has_uv=np.array([True, False]), openings=True)
-    model = NispModel(replace(tiny.document(), chart=chart))
+    model = NispModel(varied(tiny.document(), chart=chart))
     whole, half = (
-        NispModel(replace(model.document, charts=charts)).to_mesh() for charts in (table, opened)
+        NispModel(varied(model.document, charts=charts)).to_mesh() for charts in (table, opened)
     )
     right = [model.document.frame.to_normalized(mesh.positions)[:, 0] for mesh in (whole, half)]
     assert right[0].max() > 0.79
@@ -62,9 +63,27 @@ def test_default_resolution_follows_the_walls() -> None:
     ("half_thickness", "expected"), [(0.05, ResolutionConfig.least), (0.004, 510), (1e-4, 2048)]
 )
 def test_sheets_get_a_cell_for_half_their_thickness(half_thickness: float, expected: int) -> None:
-    document = replace(tiny.document(tiny.octahedron()), half_thickness=half_thickness)
-    assert default_resolution(document.sdf, document.half_thickness) == expected
+    document = tiny.varied(tiny.document(tiny.octahedron()), half_thickness=half_thickness)
+    assert default_resolution(field_of(document).sdf, field_of(document).half_thickness) == expected
 
 
 def test_no_surface_at_all_has_a_default_too() -> None:
     assert default_resolution(tiny.octahedron(-1), 0.0) == ResolutionConfig.least
+
+
+def test_a_simplifier_that_is_stuck_is_not_asked_again(monkeypatch: pytest.MonkeyPatch) -> None:
+    asked = []
+
+    def stuck(surface: Surface, faces: int, config: SimplifyConfig) -> Surface:
+        asked.append(faces)
+        return surface
+
+    monkeypatch.setattr("nispcodec.extract.meshing.simplified", stuck)
+    mesh = NispModel(tiny.document()).to_mesh(24, faces=100)
+    assert asked == [100]
+    (warning,) = mesh.warnings
+    assert warning.startswith(f"expected at most 100 faces, found {len(mesh.faces):,}: ")
+
+
+def test_as_many_faces_as_asked_for_are_no_warning() -> None:
+    assert NispModel(tiny.document()).to_mesh(24, faces=300).warnings == ()

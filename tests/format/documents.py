@@ -16,9 +16,10 @@ from nispcodec.core.asset import (
     Texture,
     TextureMap,
 )
-from nispcodec.core.document import ChartTable, Document, Frame
+from nispcodec.core.document import ChartTable, Document, Field, Frame, StoredSection
 from nispcodec.core.network import ACTIVATIONS, CONDITIONINGS, OUTPUTS, Network, NetworkSpec
 from nispcodec.core.slots import SLOTS
+from nispcodec.format.constants import SECTIONS
 
 
 def network(spec: NetworkSpec, seed: int = 0, scale: float = 1.0) -> Network:
@@ -50,10 +51,12 @@ def tiny() -> Document:
     """One chart, no UV, no texture: the smallest valid document."""
     return Document(
         frame=Frame((0.0, 0.0, 0.0), 1.0),
-        charts=ChartTable(np.zeros(1, np.int32), np.zeros(1, np.bool_)),
         materials=(Material(),),
         textures=(),
-        sdf=network(NetworkSpec((2,), 1)),
+        field=Field(
+            charts=ChartTable(np.zeros(1, np.int32), np.zeros(1, np.bool_)),
+            sdf=network(NetworkSpec((2,), 1)),
+        ),
     )
 
 
@@ -65,7 +68,6 @@ def full() -> Document:
     wood = TextureMap(0, ("clamp", "mirror"), "nearest", 0.5)
     return Document(
         frame=Frame((0.1, 2.0, -3.0), 4.5),
-        charts=charts,
         materials=(
             Material("wood", maps={"base_color": wood, "normal": TextureMap(1)}),
             Material("glass", (0.5, 0.5, 1.0, 0.25), alpha_mode="blend", double_sided=True),
@@ -74,12 +76,15 @@ def full() -> Document:
             Texture("wood.png", b"not really a png", "image/png"),
             Texture("wood normal.jpg", b"nor a jpeg", "image/jpeg"),
         ),
-        sdf=quantized(network(NetworkSpec((4, 3), 1, activation="relu", output="tanh"))),
-        chart=network(NetworkSpec((5,), 3, encoding="fourier", levels=2), 1),
-        uv=network(NetworkSpec((4,), 2, conditioning="embedding", charts=3, embedding=2), 2),
-        half_thickness=0.01,
+        field=Field(
+            charts=charts,
+            sdf=quantized(network(NetworkSpec((4, 3), 1, activation="relu", output="tanh"))),
+            chart=network(NetworkSpec((5,), 3, encoding="fourier", levels=2), 1),
+            uv=network(NetworkSpec((4,), 2, conditioning="chart_affine", charts=3, embedding=2), 2),
+            half_thickness=0.01,
+        ),
         info={"tool": "test", "seed": 7, "seconds": 0.1, "ok": True, "preset": "best"},
-        extra={"ZZZZ": b"from the future"},
+        extra={"ZZZZ": StoredSection(b"from the future")},
     )
 
 
@@ -87,6 +92,11 @@ _NUMBERS = st.floats(-1e6, 1e6, width=32)
 _NAMES = st.text(st.characters(exclude_categories=["Cc", "Cs"]), max_size=12)
 _FILES = st.from_regex(r"[a-z][a-z0-9 ]{0,8}\.(png|jpg)", fullmatch=True)
 _UNIT = st.floats(0, 1)
+_IMAGES = st.binary(min_size=1, max_size=40)
+_STORED = st.one_of(
+    st.builds(StoredSection, st.binary(max_size=40)),
+    st.builds(StoredSection, st.binary(max_size=40), st.integers(41, 2**20)),
+)
 
 
 def maps(textures: int) -> st.SearchStrategy[dict[str, TextureMap]]:
@@ -132,7 +142,7 @@ def networks(draw: st.DrawFn, outputs: int, charts: int = 0) -> Network:
         levels=draw(st.integers(1, 3)) if fourier else 0,
         conditioning=conditioning,
         charts=charts if conditioning != "none" else 0,
-        embedding=draw(st.integers(1, 3)) if conditioning in ("embedding", "chart_affine") else 0,
+        embedding=draw(st.integers(1, 3)) if conditioning == "chart_affine" else 0,
         activation=draw(st.sampled_from(ACTIVATIONS)),
         w0=draw(st.floats(0.5, 60)),
         output=draw(st.sampled_from(OUTPUTS)),
@@ -161,36 +171,36 @@ def documents(draw: st.DrawFn) -> Document:
     if count > 1 and not table.has_uv[-1]:
         table = replace(table, openings=draw(st.booleans()))
     codes = st.from_regex(r"[A-Z0-9]{4}", fullmatch=True)
-    unknown = codes.filter(lambda code: code not in ("META", "NETS", "TXTR"))
+    unknown = codes.filter(lambda code: code not in SECTIONS)
     scalars = st.one_of(st.integers(-(2**63), 2**64 - 1), _NUMBERS, _NAMES, st.booleans())
     return Document(
         frame=Frame(draw(st.tuples(_NUMBERS, _NUMBERS, _NUMBERS)), draw(st.floats(1e-6, 1e6))),
-        charts=table,
         materials=tuple(draw(materials(len(names))) for _ in range(kinds)),
         textures=tuple(
-            Texture(name, draw(st.binary(max_size=40)), draw(st.sampled_from(MIME_TYPES)))
+            Texture(
+                name, draw(st.binary(min_size=1, max_size=40)), draw(st.sampled_from(MIME_TYPES))
+            )
             for name in names
         ),
-        sdf=draw(networks(1)),
-        chart=draw(networks(count)) if count > 1 else None,
-        uv=draw(networks(2, count)) if table.has_uv.any() else None,
-        half_thickness=draw(_UNIT),
+        field=Field(
+            charts=table,
+            sdf=draw(networks(1)),
+            chart=draw(networks(count)) if count > 1 else None,
+            uv=draw(networks(2, count)) if table.has_uv.any() else None,
+            half_thickness=draw(_UNIT),
+        ),
         info=draw(st.dictionaries(_NAMES, scalars, max_size=4)),
-        extra=draw(st.dictionaries(unknown, st.binary(max_size=40), max_size=2)),
+        extra=draw(st.dictionaries(unknown, _STORED, max_size=2)),
     )
 
 
 def assert_same(first: Document, second: Document) -> None:
     """Equal in everything, weights exactly."""
     assert first.frame == second.frame
-    assert (first.charts.materials == second.charts.materials).all()
-    assert (first.charts.has_uv == second.charts.has_uv).all()
-    assert first.charts.uv_offset == second.charts.uv_offset
-    assert first.charts.uv_scale == second.charts.uv_scale
-    assert first.charts.openings == second.charts.openings
+    _assert_same_tables(first.field, second.field)
     assert first.materials == second.materials
     assert first.textures == second.textures
-    assert (first.half_thickness, first.extra) == (second.half_thickness, second.extra)
+    assert first.extra == second.extra
     assert first.info.keys() == second.info.keys()
     for key, value in first.info.items():
         assert value == second.info[key] or np.float32(value) == np.float32(second.info[key])
@@ -202,3 +212,14 @@ def assert_same(first: Document, second: Document) -> None:
         for key, tensor in network_.tensors.items():
             np.testing.assert_array_equal(tensor, other.tensors[key])
             assert np.float32(network_.steps.get(key, 0)) == np.float32(other.steps.get(key, 0))
+
+
+def _assert_same_tables(first: Field | None, second: Field | None) -> None:
+    assert first
+    assert second
+    assert (first.charts.materials == second.charts.materials).all()
+    assert (first.charts.has_uv == second.charts.has_uv).all()
+    assert first.charts.uv_offset == second.charts.uv_offset
+    assert first.charts.uv_scale == second.charts.uv_scale
+    assert first.charts.openings == second.charts.openings
+    assert first.half_thickness == second.half_thickness

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from nispcodec.core.asset import Material
-from nispcodec.core.document import ChartTable, Document, Frame
+from nispcodec.core.document import ChartTable, Document, Field, Frame
 from nispcodec.core.network import Network, NetworkSpec
 
 
@@ -20,8 +20,10 @@ def slab() -> Document:
     }
     return Document(
         frame=Frame((0.0, 0.0, 3.0), 2.0),
-        charts=ChartTable(np.zeros(1, np.int32), np.zeros(1, np.bool_)),
         materials=(Material("slab", base_color=(0.5, 0.25, 1.0, 1.0)),),
         textures=(),
-        sdf=Network(spec, tensors, {"weight.0": 0.5, "weight.1": 0.5}),
+        field=Field(
+            charts=ChartTable(np.zeros(1, np.int32), np.zeros(1, np.bool_)),
+            sdf=Network(spec, tensors, {"weight.0": 0.5, "weight.1": 0.5}),
+        ),
     )

@@ -80,13 +80,13 @@ def nested(depth: int) -> list[Any]:
     ("largest", "beyond", "text"),
     [
         (nested(MAX_DEPTH), nested(MAX_DEPTH + 1), f"depth: expected at most {MAX_DEPTH}"),
-        ([0] * MAX_ITEMS, [0] * (MAX_ITEMS + 1), f"array length: expected at most {MAX_ITEMS}"),
+        ([0] * MAX_ITEMS, [0] * (MAX_ITEMS + 1), f"array_length: expected at most {MAX_ITEMS}"),
         (
             dict.fromkeys(range(MAX_ITEMS), 0),
             dict.fromkeys(range(MAX_ITEMS + 1), 0),
-            f"map length: expected at most {MAX_ITEMS}",
+            f"map_length: expected at most {MAX_ITEMS}",
         ),
-        ("ä" * (MAX_TEXT // 2), "ä" * (MAX_TEXT // 2 + 1), f"text length: .* {MAX_TEXT}, found"),
+        ("ä" * (MAX_TEXT // 2), "ä" * (MAX_TEXT // 2 + 1), f"text_length: .* {MAX_TEXT}, found"),
         (
             [[0] * 4090] * 4,
             [[0] * 4096] * 4,

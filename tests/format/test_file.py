@@ -22,7 +22,7 @@ def test_a_malformed_file_is_named_and_its_place_is_kept(tmp_path: Path) -> None
     path.write_bytes(pack(full())[:-1])
     with pytest.raises(FormatError) as caught:
         read(path)
-    assert str(caught.value).startswith(f"{path}: section ZZZZ, field stored length: expected ")
+    assert str(caught.value).startswith(f"{path}: section ZZZZ, field stored_length: expected ")
     assert caught.value.file == str(path)
 
 

@@ -13,7 +13,7 @@ ALL = list(all_malformed())
 
 
 def test_the_file_they_are_all_made_from_is_valid() -> None:
-    assert unpack(container(rows())).sdf.spec.hidden == (2,)
+    assert unpack(container(rows())).networks["sdf"].spec.hidden == (2,)
 
 
 def test_names_are_unique() -> None:

@@ -21,7 +21,7 @@ TEXTURES = st.builds(
     st.builds(str.__add__, st.text("ab .", max_size=4), ENDINGS).filter(
         lambda name: "." in name and name not in (".", "..")
     ),
-    st.binary(max_size=9),
+    st.binary(min_size=1, max_size=9),
     st.sampled_from(MIME_TYPES),
 )
 
@@ -72,6 +72,11 @@ def test_maps_that_no_file_can_hold(material: Material, text: str) -> None:
         encode_material(material)
 
 
+def test_an_image_has_bytes() -> None:
+    with pytest.raises(FormatError, match=r"textures\.a\.png\.length: expected at least 1 byte"):
+        encode_textures([Texture("a.png", b"", "image/png")])
+
+
 def test_a_texture_of_another_type() -> None:
     with pytest.raises(FormatError, match=r"textures\.a\.gif\.mime: .*found image/gif"):
-        encode_textures([Texture("a.gif", b"", "image/gif")])
+        encode_textures([Texture("a.gif", b"GIF", "image/gif")])

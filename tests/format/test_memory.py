@@ -93,5 +93,8 @@ def test_large_images_are_copied_once() -> None:
 def test_bombs_unfold() -> None:
     """They are what they claim to be: valid files, not early errors."""
     for name in ("empty matrices", "full diagonals", "endless tokens", "large texture"):
-        assert unpack(bombs()[name]).sdf.spec.weight_count > 0
-    assert unpack(container(change(rows(), b"NETS", payload=nets()))).sdf.spec.weight_count == 11
+        assert unpack(bombs()[name]).networks["sdf"].spec.weight_count > 0
+    assert (
+        unpack(container(change(rows(), b"NETS", payload=nets()))).networks["sdf"].spec.weight_count
+        == 11
+    )

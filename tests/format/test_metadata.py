@@ -13,6 +13,7 @@ from nispcodec.core.errors import FormatError
 from nispcodec.core.network import NetworkSpec
 from nispcodec.format import canonical, metadata
 from tests.format.documents import documents, full, network, tiny
+from tests.tiny import field_of, varied
 
 
 @given(documents())
@@ -21,29 +22,32 @@ def test_all_but_weights_and_images_comes_back(document: Document) -> None:
     found = metadata.decode(metadata.encode(document))
     assert found.frame == document.frame
     assert found.materials == document.materials
-    assert found.half_thickness == document.half_thickness
+    assert found.half_thickness == field_of(document).half_thickness
     assert found.specs == {name: each.spec for name, each in document.networks.items()}
     assert [name for name, _, _ in found.textures] == [each.name for each in document.textures]
     table = found.charts
-    np.testing.assert_array_equal(table.materials, document.charts.materials)
-    np.testing.assert_array_equal(table.has_uv, document.charts.has_uv)
+    assert table
+    np.testing.assert_array_equal(table.materials, field_of(document).charts.materials)
+    np.testing.assert_array_equal(table.has_uv, field_of(document).charts.has_uv)
     assert (table.materials.dtype, table.has_uv.dtype) == (np.dtype("i4"), np.dtype(bool))
     assert (table.uv_offset, table.uv_scale) == (
-        document.charts.uv_offset,
-        document.charts.uv_scale,
+        field_of(document).charts.uv_offset,
+        field_of(document).charts.uv_scale,
     )
 
 
 def test_weights_and_images_change_nothing() -> None:
     textures = tuple(dataclasses.replace(each, data=each.data[::-1]) for each in full().textures)
-    other = dataclasses.replace(full(), textures=textures, sdf=network(full().sdf.spec, 9))
+    other = varied(
+        dataclasses.replace(full(), textures=textures), sdf=network(field_of(full()).sdf.spec, 9)
+    )
     assert metadata.encode(other) == metadata.encode(full())
 
 
 @pytest.mark.parametrize(("kinds", "width"), [(256, 1), (257, 2)])
 def test_charts_name_their_materials_in_one_byte_or_two(kinds: int, width: int) -> None:
     charts = ChartTable(np.array([0, kinds - 1, 0], np.int32), np.zeros(3, np.bool_))
-    document = dataclasses.replace(
+    document = varied(
         tiny(),
         charts=charts,
         materials=(Material(),) * kinds,
@@ -51,7 +55,9 @@ def test_charts_name_their_materials_in_one_byte_or_two(kinds: int, width: int) 
     )
     data = metadata.encode(document)
     assert len(canonical.decode("META", data)[4]) == 3 * width
-    assert metadata.decode(data).charts.materials.tolist() == [0, kinds - 1, 0]
+    table = metadata.decode(data).charts
+    assert table
+    assert table.materials.tolist() == [0, kinds - 1, 0]
 
 
 @pytest.mark.parametrize(

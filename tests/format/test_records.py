@@ -10,7 +10,8 @@ from nispcodec.core.network import NetworkSpec
 from nispcodec.format import records
 from nispcodec.format.codings import registry
 from nispcodec.format.codings.reader import Reader
-from nispcodec.format.constants import MAX_JOINED, MAX_SYMBOL
+from nispcodec.format.constants import MAX_SYMBOL
+from nispcodec.format.tag import MOST_TOGETHER
 from tests.format.documents import network, quantized
 
 SPEC = NetworkSpec((5, 4, 3), 2)
@@ -33,11 +34,11 @@ def test_only_neighbors_of_one_step_share_a_record() -> None:
     names = list(SPEC.shapes)
     apart = names.index("bias.1")
     for start, end, record in found:
-        assert 1 <= end - start == len(record.tensors) <= 1 + MAX_JOINED
+        assert 1 <= end - start == len(record.tensors) <= MOST_TOGETHER
         assert end - start == 1 or not start <= apart < end
         assert end - start == 1 or not record.coding.codec
     pairs = {(start, end) for start, end, _ in found}
-    assert (0, 1 + MAX_JOINED) not in pairs
+    assert (0, MOST_TOGETHER) not in pairs
     assert {(0, apart), (apart, apart + 1), (apart + 1, len(names))} <= pairs
 
 

@@ -10,13 +10,14 @@ import pytest
 from hypothesis import given, settings
 
 from nispcodec.core.asset import Material, Texture, TextureMap
-from nispcodec.core.document import ChartTable, Document, Frame
+from nispcodec.core.document import ChartTable, Document, Frame, StoredSection
 from nispcodec.core.errors import FormatError
 from nispcodec.core.network import NetworkSpec
 from nispcodec.format import inspect, metadata, pack, unpack
 from nispcodec.format.codings.registry import CODINGS
 from tests.format.documents import assert_same, documents, full, network, quantized, tiny
 from tests.format.test_measures import ENCODERS
+from tests.tiny import varied
 
 
 @given(documents())
@@ -43,7 +44,7 @@ def test_every_coding_keeps_any_document(document: Document) -> None:
 def test_the_default_is_as_small_as_any_coding() -> None:
     spec = NetworkSpec((32, 32, 32), 1)
     for sdf in (network(spec), quantized(network(spec)), quantized(network(spec), density=0.1)):
-        document = dataclasses.replace(tiny(), sdf=sdf)
+        document = varied(tiny(), sdf=sdf)
         smallest = min(len(pack(document, coding)) for coding in CODINGS)
         assert len(pack(document)) <= smallest
 
@@ -63,8 +64,8 @@ def test_inspect_accounts_for_every_byte() -> None:
 def test_overhead_of_a_one_material_asset() -> None:
     """As an encoder writes it, with what it measured: two maps under names of usual lengths."""
     charts = ChartTable(np.zeros(13, np.int32), np.ones(13, np.bool_), (-0.25, 0.125), (1.25, 0.75))
-    spec = NetworkSpec((32,) * 4, 2, conditioning="embedding", charts=13, embedding=4)
-    document = dataclasses.replace(
+    spec = NetworkSpec((32,) * 4, 2, conditioning="chart_affine", charts=13, embedding=4)
+    document = varied(
         full(),
         frame=Frame((0.0, 0.25, 0.5), 1.5),
         charts=charts,
@@ -89,14 +90,14 @@ def test_overhead_of_a_one_material_asset() -> None:
 def test_negative_zero_becomes_zero() -> None:
     sdf = network(NetworkSpec((2,), 1))
     sdf.tensors["weight.0"][0, 0] = -0.0
-    back = unpack(pack(dataclasses.replace(tiny(), sdf=sdf))).sdf
+    back = unpack(pack(varied(tiny(), sdf=sdf))).networks["sdf"]
     assert not np.signbit(back.tensors["weight.0"][0, 0])
 
 
 def test_weights_that_are_no_multiples_of_their_step() -> None:
     sdf = dataclasses.replace(network(NetworkSpec((2,), 1)), steps={"weight.0": 0.3})
     with pytest.raises(FormatError, match=r"sdf\.weight\.0: expected multiples of the step 0\.3"):
-        pack(dataclasses.replace(tiny(), sdf=sdf))
+        pack(varied(tiny(), sdf=sdf))
 
 
 @pytest.mark.parametrize(
@@ -108,12 +109,12 @@ def test_weights_that_are_no_multiples_of_their_step() -> None:
         ({"info": {"a": [1]}}, "document.info.a"),
         ({"info": {"a": 2**64}}, "value"),
         ({"info": {"a": "\ud800"}}, "value"),
-        ({"info": {"a": "x" * 2000}}, "text length"),
+        ({"info": {"a": "x" * 2000}}, "text_length"),
         ({"extra": {"META": b""}}, "extra"),
-        ({"extra": {"abcd": b""}}, "section code"),
-        ({"extra": {"\ud800": b""}}, "section code"),
-        ({"extra": {"LONGER": b""}}, "section code"),
-        ({"extra": {f"X{i:03}": b"" for i in range(64)}}, "section count"),
+        ({"extra": {"abcd": StoredSection(b"")}}, "section_code"),
+        ({"extra": {"\ud800": StoredSection(b"")}}, "section_code"),
+        ({"extra": {"LONGER": StoredSection(b"")}}, "section_code"),
+        ({"extra": {f"X{i:03}": StoredSection(b"") for i in range(64)}}, "section_count"),
     ],
 )
 def test_documents_that_cannot_be_written(change: dict[str, Any], field: str) -> None:

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from nispcodec.core import asset, network, slots
+from nispcodec.core import asset, mesh_part, network, slots
 from nispcodec.core.texture import sample_texture
 from nispcodec.format import constants, inspect, pack, steps, unpack
 from nispcodec.format.codings import frequency_model, registry
@@ -25,6 +25,7 @@ from tests.tiny import random_network
 NAMES = (
     vars(network)
     | vars(asset)
+    | vars(mesh_part)
     | vars(constants)
     | {"CODINGS": registry.CODINGS, "SLOTS": slots.SLOTS}
 )
@@ -170,7 +171,6 @@ def matrices(made: network.Network) -> list[tuple[int, int]]:
         {"encoding": "fourier", "levels": 3, "activation": "relu", "output": "tanh"},
         {"conditioning": "scalar", "charts": 5, "output": "sigmoid", "w0": 4.0},
         {"conditioning": "scalar", "charts": 5, "encoding": "fourier", "levels": 2},
-        {"conditioning": "embedding", "charts": 5, "embedding": 3},
         {
             "conditioning": "chart_affine",
             "charts": 5,
@@ -180,7 +180,7 @@ def matrices(made: network.Network) -> list[tuple[int, int]]:
         },
         {"conditioning": "scalar", "charts": 5, "encoding": "fourier", "levels": 2, "mirror": 13},
     ],
-    ids=["plain", "fourier", "scalar", "both", "embedding", "chart_affine", "mirror"],
+    ids=["plain", "fourier", "scalar", "both", "chart_affine", "mirror"],
 )
 def test_its_evaluator(options: dict[str, Any]) -> None:
     made = random_network(network.NetworkSpec((8, 7), 2, **options), scale=0.1)

@@ -57,7 +57,7 @@ def test_only_the_uv_network_may_ask_for_the_chart(name: str) -> None:
         ({2: {1: [4]}}, "networks.sdf: expected present, found absent"),
         ({1: {1: [4.0]}}, "networks.sdf.hidden: expected integers, found another type"),
         ({1: {1: [True]}}, "networks.sdf.hidden: expected integers, found another type"),
-        ({1: {1: [2000]}}, "networks.sdf.hidden width: expected 1 to 1024, found 2000"),
+        ({1: {1: [2000]}}, "networks.sdf.hidden: expected 1 to 1024, found 2000"),
         ({1: {1: [4], 7: 30.0}}, "networks.sdf.w0: expected absent, being the default"),
         ({1: {1: [4]}, 9: {}}, "networks.keys: expected only known keys, found 9"),
     ],

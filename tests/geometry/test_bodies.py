@@ -193,6 +193,15 @@ def test_what_is_in_order_is_left_alone() -> None:
         assert solid_of(corners).warnings == ()
 
 
+@pytest.mark.parametrize(("gap", "told"), [(2.4e-16, False), (6e-8, False), (5e-7, True)])
+def test_gaps_of_rounding_are_closed_without_a_word(gap: float, told: bool) -> None:
+    corners = BALL.copy()
+    corners[:6] += gap
+    solid = solid_of(corners)
+    assert solid.open_surface_share == 0
+    assert any("closed seams" in each for each in solid.warnings) == told
+
+
 def test_bodies_are_joined_by_edges_and_not_by_a_corner() -> None:
     assert bodies_of(np.concatenate([BOX, BOX + 1.0])).body.max() == 1
     assert bodies_of(np.concatenate([BOX, BOX + np.array([1.0, 1.0, 0.0])])).body.max() == 0

@@ -24,9 +24,8 @@ SPECS = {
         (8, 8), 2, encoding="fourier", levels=3, conditioning="scalar", charts=7, w0=1.0
     ),
     "scalar identity": NetworkSpec((8,), 2, conditioning="scalar", charts=7, output="sigmoid"),
-    "embedding": NetworkSpec((8, 8), 2, conditioning="embedding", charts=5, embedding=3, w0=2.0),
-    "embedding fourier": NetworkSpec(
-        (8,), 2, encoding="fourier", levels=2, conditioning="embedding", charts=5, embedding=3
+    "frames fourier": NetworkSpec(
+        (8,), 2, encoding="fourier", levels=2, conditioning="chart_affine", charts=5, embedding=3
     ),
     "frames": NetworkSpec((8, 8), 2, conditioning="chart_affine", charts=5, embedding=3, w0=2.0),
     "frames sided": NetworkSpec(
@@ -195,6 +194,6 @@ def test_gradient_of_no_points() -> None:
     "charts", [None, np.zeros(4, np.int32), np.array([0, 1, 5]), np.array([0, -1, 2])]
 )
 def test_bad_charts_are_refused(charts: np.ndarray | None) -> None:
-    network = tiny.random_network(SPECS["embedding"])
+    network = tiny.random_network(SPECS["frames"])
     with pytest.raises(QueryError, match="charts: expected"):
         evaluate(network, np.zeros((3, 3), np.float32), charts)

@@ -52,6 +52,7 @@ class Gltf:
 
     def __init__(self) -> None:
         self.data = b""
+        self.other_buffers: list[dict[str, Any]] = []
         self.json: dict[str, Any] = {
             "asset": {"version": "2.0"},
             "bufferViews": [],
@@ -86,7 +87,7 @@ class Gltf:
         return self
 
     def glb(self) -> bytes:
-        self.json["buffers"] = [{"byteLength": len(self.data)}]
+        self.json["buffers"] = [{"byteLength": len(self.data)}, *self.other_buffers]
         text = json.dumps(self.json).encode()
         text += b" " * (-len(text) % 4)
         binary = self.data + b"\0" * (-len(self.data) % 4)

@@ -397,6 +397,19 @@ def test_skins_place_their_vertices_by_joints_and_weights(tmp_path: Path) -> Non
     assert "bind pose" in mesh.warnings[0]
 
 
+def test_skins_of_more_than_four_joints_a_vertex(tmp_path: Path) -> None:
+    gltf = skinned_triangle([(0, 0, 0, 0)] * 3, [(0.5, 0, 0, 0)] * 3)
+    attributes = gltf.json["meshes"][0]["primitives"][0]["attributes"]
+    attributes["JOINTS_1"] = gltf.accessor([(1, 1, 1, 1)] * 3, "<u2")
+    attributes["WEIGHTS_1"] = gltf.accessor([(0.125, 0.125, 0.125, 0.125)] * 3)
+    mesh = gltf.load(tmp_path)
+    expected = [(4, 0, 0), (6, 0, 0), (4, 1, 1)]
+    np.testing.assert_allclose(mesh.corners[0], expected, atol=1e-6)
+    attributes["WEIGHTS_1"] = gltf.accessor([(0.125, 0.125, 0.125, 0.125)] * 2)
+    with pytest.raises(MeshError, match="expected 3 joints and weights"):
+        gltf.load(tmp_path)
+
+
 def test_a_vertex_of_an_unknown_joint_is_an_error(tmp_path: Path) -> None:
     with pytest.raises(MeshError, match="expected joints below 2, found 2"):
         skinned_triangle([(2, 0, 0, 0)] * 3, [(1, 0, 0, 0)] * 3).load(tmp_path)
@@ -446,7 +459,7 @@ def test_external_images(tmp_path: Path) -> None:
 
 def test_an_image_format_we_cannot_read_is_a_warning(tmp_path: Path) -> None:
     gltf = textured()
-    gltf.json["textures"] = [{"extensions": {"KHR_texture_basisu": {"source": 0}}}]
+    gltf.json["textures"] = [{"extensions": {"ACME_texture_magic": {"source": 0}}}]
     mesh = gltf.load(tmp_path)
     assert mesh.warnings == ("a.glb: textures[0]: holds no image that we can read",)
 
@@ -511,8 +524,6 @@ def broken(change: str) -> bytes:
     spoil: dict[str, Callable[[], object]] = {
         "version": lambda: gltf.json.update(asset={"version": "1.0"}),
         "no asset": lambda: gltf.json.pop("asset"),
-        "draco": lambda: gltf.json.update(extensionsRequired=["KHR_draco_mesh_compression"]),
-        "meshopt": lambda: gltf.json.update(extensionsRequired=["EXT_meshopt_compression"]),
         "extension": lambda: gltf.json.update(extensionsRequired=["ACME_magic"]),
         "accessor": lambda: primitive["attributes"].update(POSITION=99),
         "negative": lambda: primitive["attributes"].update(POSITION=-1),
@@ -547,8 +558,6 @@ def broken(change: str) -> bytes:
     [
         ("version", "expected glTF version 2, found '1.0'"),
         ("no asset", "expected a member 'asset'"),
-        ("draco", "export it again without compression"),
-        ("meshopt", "export it again without compression"),
         ("extension", "'ACME_magic'"),
         ("accessor", "a.glb: accessors: expected an index below 3, found 99"),
         ("negative", "attributes.POSITION: expected a non-negative integer, found -1"),

@@ -56,7 +56,7 @@ def test_other_formats_become_png_with_a_warning(format: str) -> None:
     [
         b"v/1\x01",
         b"#?RADIANCE\n",
-        b"\xabKTX 20",
+        b"\xabKTX 11",
         b"<svg>",
         b'<?xml version="1.0"?>\n<svg width="1"/>',
     ],

@@ -17,6 +17,7 @@ from nispcodec.render.maps import Maps
 from nispcodec.render.picture import Eye
 from nispcodec.render.views import on_white, render_views
 from tests import tiny
+from tests.tiny import field_of, varied
 
 
 @pytest.fixture(scope="module")
@@ -26,7 +27,7 @@ def model() -> NispModel:
 
 @pytest.fixture(scope="module")
 def scene(model: NispModel) -> FieldScene:
-    return FieldScene(model)
+    return FieldScene(model.document, field_of(model.document))
 
 
 def eye(scene: FieldScene, size: int = 48) -> Eye:
@@ -58,9 +59,9 @@ def test_jacobians_lie_in_the_surface_and_say_how_uv_changes(scene: FieldScene) 
 
 
 def test_openings_are_not_seen(model: NispModel) -> None:
-    table = model.document.charts
+    table = field_of(model.document).charts
     charts = dataclasses.replace(table, has_uv=np.array([True, False]), openings=True)
-    opened = NispModel(dataclasses.replace(model.document, charts=charts))
+    opened = NispModel(tiny.varied(model.document, charts=charts))
     (whole,), (half,) = (render_views(each, [Camera(80, 10)], 32) for each in (model, opened))
     # Through the opening, the inside of the other half.
     assert whole[13, 19, 3] == half[13, 19, 3] == 1
@@ -98,7 +99,7 @@ def test_normal_channel_shows_world_axes(scene: FieldScene) -> None:
 
 
 def test_geometry_alone_can_be_seen() -> None:
-    bare = dataclasses.replace(
+    bare = varied(
         tiny.document(),
         charts=ChartTable(np.zeros(1, np.int32), np.zeros(1, np.bool_)),
         chart=None,
@@ -109,6 +110,6 @@ def test_geometry_alone_can_be_seen() -> None:
 
 
 def test_a_field_without_a_surface_is_an_empty_picture() -> None:
-    nothing = dataclasses.replace(tiny.document(), sdf=tiny.octahedron(-1.0))
+    nothing = varied(tiny.document(), sdf=tiny.octahedron(-1.0))
     (picture,) = render_views(NispModel(nothing), [Camera()], 24)
     assert (picture == 0).all()

@@ -2,19 +2,19 @@
 
 from __future__ import annotations
 
-from dataclasses import fields, replace
+from dataclasses import fields
 
 import numpy as np
 import pytest
 
 from nispcodec.core.document import ChartTable
 from nispcodec.metrics.surface import Surface
-from nispcodec.model import NispModel
 from nispcodec.render.field import FieldScene
 from nispcodec.render.fragments import Fragments, Scene
 from nispcodec.render.raycast import MeshScene
 from tests import tiny
 from tests.render.scenes import UNIT, square
+from tests.tiny import field_of
 
 COUNT = 60
 TYPES = {
@@ -34,8 +34,9 @@ def scene(name: str) -> Scene:
     if name == "mesh":
         return MeshScene(square(base_color=[[(255, 0, 0)]]), UNIT)
     plain = tiny.document()
-    half = ChartTable(plain.charts.materials, np.array([True, False]))
-    return FieldScene(NispModel(replace(plain, charts=half)))
+    half = ChartTable(field_of(plain).charts.materials, np.array([True, False]))
+    document = tiny.varied(plain, charts=half)
+    return FieldScene(document, field_of(document))
 
 
 @pytest.fixture(scope="module", params=["mesh", "field"])

@@ -135,13 +135,14 @@ def vector(network: Network) -> Float32Array:
 
 
 @pytest.mark.parametrize(
-    ("spoils", "kept", "slight", "notable"),
+    ("spoils", "kept", "slight", "notable", "rise"),
     [
-        ([2.0, 0.5, 1.0], 0.5, 1.05, None),
-        ([0.0], 0.0, 1.05, None),
-        ([2.0], 2.0, math.inf, None),
-        ([2.0, 0.5, 1.0], 0.5, math.inf, 1.15),
-        ([2.0], 2.0, 1.05, math.inf),
+        ([2.0, 0.5, 1.0], 0.5, 1.05, None, 1.0),
+        ([0.0], 0.0, 1.05, None, 1.0),
+        ([2.0], 2.0, math.inf, None, 1.0),
+        ([2.0, 0.5, 1.0], 0.5, math.inf, 1.15, 1.0),
+        ([2.0], 2.0, 1.05, math.inf, 1.0),
+        ([2.0], 2.0, 1.05, None, math.inf),
     ],
 )
 def test_rounding_that_costs_much_is_tried_again_and_the_best_stays(
@@ -149,9 +150,13 @@ def test_rounding_that_costs_much_is_tried_again_and_the_best_stays(
     kept: float,
     slight: float,
     notable: float | None,
+    rise: float,
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """As many times as there are `spoils`, each from the best weights; `notable`: as if large."""
+    """As many times as there are `spoils`, each from the best weights; `notable`: as if large.
+
+    `rise` is what the preset lets it cost.
+    """
     untried = list(spoils)
     config = QuantizeConfig(slight=slight)
     if notable is not None:
@@ -165,7 +170,7 @@ def test_rounding_that_costs_much_is_tried_again_and_the_best_stays(
     monkeypatch.setattr("nispcodec.train.loop.round_weights", spoiled)
     plain = vector(run(sdf_task()))
     training = TrainConfig(quantize=config)
-    task = replace(sdf_task(), quantization=Quantization(1e-3), config=training)
+    task = replace(sdf_task(), quantization=Quantization(1e-3, rise=rise), config=training)
     rounded = vector(run(task))
     assert untried == []
     assert float(np.abs(rounded - plain - np.float32(kept)).max()) < 1e-5

@@ -33,7 +33,7 @@ from nispcodec.train.task import Quantization, Schedule
 from tests import tiny
 from tests.train.fits import ENGINE, run, sdf_task
 
-SPEC = NetworkSpec((12, 7), 2, conditioning="embedding", charts=4, embedding=3)
+SPEC = NetworkSpec((12, 7), 2, conditioning="chart_affine", charts=4, embedding=3)
 
 
 def weights(seed: int = 0) -> dict[str, Float32Array]:
@@ -139,7 +139,7 @@ def test_what_makes_no_sense_is_an_error(
 
 def written(network: Network) -> Network:
     """The network as it comes back from a file."""
-    return unpack(pack(tiny.document(sdf=network))).sdf
+    return unpack(pack(tiny.document(sdf=network))).networks["sdf"]
 
 
 @pytest.mark.parametrize("optimizer", ["muon", "adam"])

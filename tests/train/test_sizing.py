@@ -11,6 +11,7 @@ from nispcodec.train.config import SizingConfig
 from nispcodec.train.sizing import (
     bytes_of,
     even_width,
+    foreseen,
     hidden_layers,
     scale_for_bytes,
 )
@@ -61,3 +62,9 @@ def test_the_scale_meets_the_bytes(wanted: float) -> None:
 
     scale = scale_for_bytes(size, wanted)
     assert size(scale) >= wanted > size(scale - 0.2)
+
+
+def test_a_wider_network_is_expected_to_end_nearer_than_its_probe() -> None:
+    assert foreseen(1e-3, (24, 24, 24), (24,) * 4) == pytest.approx(1e-3)
+    assert foreseen(1e-3, (24,) * 4, (48,) * 4) == pytest.approx(5e-4)
+    assert foreseen(1e-3, (24,) * 4, (12,) * 4) == pytest.approx(2e-3)

@@ -24,10 +24,10 @@ def decode(reader: Reader, shape: tuple[int, int], symbols: bool) -> AnyArray:
     Raises FormatError for positions outside the matrix.
     """
     count = reader.varint("count", shape[0] * shape[1])
-    rows = np.cumsum(indices.decode(reader, "row step", count, shape[0] - 1))
+    rows = np.cumsum(indices.decode(reader, "row_step", count, shape[0] - 1))
     if count and rows[-1] >= shape[0]:
         raise reader.error("row", f"below {shape[0]}", rows[-1])
-    gaps = indices.decode(reader, "column gap", count, shape[1] - 1)
+    gaps = indices.decode(reader, "column_gap", count, shape[1] - 1)
     columns = indices.from_gaps(reader, np.bincount(rows, minlength=shape[0]), gaps, shape[1])
     matrix = np.zeros(shape, np.int32 if symbols else np.float32)
     matrix[rows, columns] = numbers.decode(reader, count, symbols)

@@ -22,8 +22,8 @@ def decode(reader: Reader, shape: tuple[int, int], symbols: bool) -> AnyArray:
 
     Raises FormatError for positions outside the matrix.
     """
-    counts = indices.decode(reader, "row count", shape[0], shape[1])
-    gaps = indices.decode(reader, "column gap", int(counts.sum()), shape[1] - 1)
+    counts = indices.decode(reader, "row_count", shape[0], shape[1])
+    gaps = indices.decode(reader, "column_gap", int(counts.sum()), shape[1] - 1)
     columns = indices.from_gaps(reader, counts, gaps, shape[1])
     matrix = np.zeros(shape, np.int32 if symbols else np.float32)
     rows = np.repeat(np.arange(shape[0]), counts)

@@ -29,8 +29,8 @@ def decode(reader: Reader, shape: tuple[int, int], symbols: bool) -> AnyArray:
     """
     number = _diagonals(shape)
     last = shape[0] + shape[1] - 2
-    count = reader.varint("diagonal count", last + 1)
-    used = np.cumsum(indices.decode(reader, "diagonal gap", count, last) + 1) - 1
+    count = reader.varint("diagonal_count", last + 1)
+    used = np.cumsum(indices.decode(reader, "diagonal_gap", count, last) + 1) - 1
     if count and used[-1] > last:
         raise reader.error("diagonal", f"at most {last}", used[-1])
     order = _order(number, used)

@@ -145,7 +145,7 @@ def _integers(reader: Reader, limit: int, tokens: Int64Array) -> Int64Array:
     magnitudes = np.abs(tokens - cells)
     if open_bits:
         above = magnitudes[signs != 0] - 1
-        rest = bits.decode(reader, "open bits", np.full(len(above), open_bits, np.uint8))
+        rest = bits.decode(reader, "open_bits", np.full(len(above), open_bits, np.uint8))
         magnitudes[signs != 0] = (above << open_bits) + rest + 1
     if magnitudes.max() > limit:
         raise reader.error("magnitude", f"at most {limit}", magnitudes.max())

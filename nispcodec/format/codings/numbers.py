@@ -39,6 +39,6 @@ def decode(reader: Reader, count: int, symbols: bool) -> AnyArray:
     Raises FormatError for a kind of the other sort, and for too few bytes.
     """
     kinds = INTEGERS if symbols else FLOATS
-    name = reader.member("number kind", NUMBERS, tuple(kinds))
+    name = reader.member("number_kind", NUMBERS, tuple(kinds))
     values = np.frombuffer(reader.take(count * kinds[name].itemsize, "values"), kinds[name])
     return values.astype(np.int32 if symbols else np.float32)

@@ -58,7 +58,8 @@ def encode(starts: list[int], frequencies: list[int]) -> bytes:
 def decode(reader: Reader, runs: Runs) -> Int64Array:
     """The inverse of `encode`: the tokens (n,) int64 of all runs, each with a table of its own.
 
-    Raises FormatError for too few words and for another last state than the first of `encode`.
+    Raises FormatError for too few words, for a first state that no encoder ends with, and for
+    another last state than the first of `encode`.
     """
     count = sum(length for length, _ in runs)
     if not count:
@@ -70,10 +71,19 @@ def decode(reader: Reader, runs: Runs) -> Int64Array:
         tokens, states, used = decoder(words, runs, lanes(count))
     except (StopIteration, IndexError):
         raise reader.error("words", "as many as the tokens need", len(words)) from None
+    except ValueError as why:
+        raise reader.error("first_state", f"at least {LOW}", why) from None
     reader.take(2 * used, "words")
     if (states != LOW).any():
-        raise reader.error("final state", LOW, int(states[states != LOW][0]))
+        raise reader.error("final_state", LOW, int(states[states != LOW][0]))
     return tokens
+
+
+def _first(least: int) -> int:
+    """The state, or least state, that a stream begins with. Raises ValueError below `LOW`."""
+    if least < LOW:
+        raise ValueError(least)
+    return least
 
 
 def _one_by_one(words: Uint16Array, runs: Runs, _: int) -> Decoded:
@@ -81,7 +91,7 @@ def _one_by_one(words: Uint16Array, runs: Runs, _: int) -> Decoded:
     following, mask, low = source.__next__, SCALE - 1, LOW
     tokens: list[int] = []
     append = tokens.append
-    state = following() << 16 | following()
+    state = _first(following() << 16 | following())
     for count, table in runs:
         starts, frequencies = table[:-1].tolist(), np.diff(table).tolist()
         for _ in range(count):
@@ -107,6 +117,7 @@ def _side_by_side(words: Uint16Array, runs: Runs, count: int) -> Decoded:
     if used > len(words):
         raise IndexError
     states = words[0:used:2].astype(np.uint32) << 16 | words[1:used:2]
+    _first(int(states.min()))
     for begin in range(0, len(bases), count):
         base = bases[begin : begin + count]
         state = states[: len(base)]

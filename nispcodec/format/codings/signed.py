@@ -33,7 +33,7 @@ def encode(values: AnyArray) -> tuple[bytes, Int64Array]:
 
 def read_top(reader: Reader) -> tuple[str, int]:
     """Number kind and largest pattern of a run of floats. Raises FormatError for other bytes."""
-    kind = reader.member("number kind", NUMBERS, tuple(FLOATS))
+    kind = reader.member("number_kind", NUMBERS, tuple(FLOATS))
     return kind, reader.varint("top", _INFINITIES[kind] - 1)
 
 

@@ -13,8 +13,11 @@ from nispcodec.core.errors import MeshError
 from nispcodec.io.folder import Folder
 from nispcodec.io.read.coordinates import without_unusable
 from nispcodec.io.read.gltf_buffers import Buffers, split_glb
-from nispcodec.io.read.gltf_json import Element, parse_json
+from nispcodec.io.read.gltf_draco import EXTENSION as DRACO
+from nispcodec.io.read.gltf_draco import DracoPrimitives
+from nispcodec.io.read.gltf_json import LARGEST, Element, parse_json
 from nispcodec.io.read.gltf_materials import GltfMaterials, UvSource
+from nispcodec.io.read.gltf_meshopt import EXTENSIONS as MESHOPT
 from nispcodec.io.read.gltf_nodes import Shown, shown_meshes, skinned
 
 _READABLE = {
@@ -26,30 +29,26 @@ _READABLE = {
     "EXT_mesh_gpu_instancing",
     "KHR_node_visibility",
     "KHR_texture_basisu",
+    DRACO,
+    *MESHOPT,
 }
-_COMPRESSED = {
-    "KHR_draco_mesh_compression",
-    "EXT_meshopt_compression",
-    "KHR_meshopt_compression",
-}
-_SKINNING = ("JOINTS_0", "WEIGHTS_0")
 _TRIANGLES, _STRIP, _FAN = 4, 5, 6
-# Instances multiply what a small file holds: no more vertices or faces than this.
-LARGEST = 20_000_000
 
 
 def read_gltf(data: bytes, name: str, folder: Folder) -> TexturedMesh:
     """Parse a .gltf or .glb file, and the buffers and images that it names in `folder`.
 
     Node transforms are applied; UVs get their origin bottom-left. Raises MeshError, naming the file
-    `name` and the JSON path, for whatever glTF 2.0 does not allow, and for compressed meshes.
+    `name` and the JSON path, for whatever glTF 2.0 does not allow; NispError for a compressed file
+    without the extra `gltf`.
     """
     text, binary = split_glb(data, name)
     root = parse_json(text, name)
     _expect_readable(root)
     warnings = _things_left_out(root)
     buffers = Buffers(root, binary, folder)
-    scene = _Scene(buffers, GltfMaterials(root, buffers, folder, warnings), warnings)
+    materials = GltfMaterials(root, buffers, folder, warnings)
+    scene = _Scene(buffers, materials, DracoPrimitives(root, buffers, warnings), warnings)
     for number, shown in enumerate(shown_meshes(root, buffers, warnings)):
         for primitive in shown.mesh.entries("primitives"):
             scene.add(primitive, shown, number)
@@ -61,8 +60,6 @@ def _expect_readable(root: Element) -> None:
     if not version.startswith("2."):
         root.fail("glTF version 2", version)
     for extension in root.texts("extensionsRequired"):
-        if extension in _COMPRESSED:
-            root.fail("an uncompressed mesh (export it again without compression)", extension)
         if extension not in _READABLE and not extension.startswith("KHR_materials_"):
             root.fail("only extensions that we can read", extension)
 
@@ -92,9 +89,16 @@ class _Rows:
 class _Scene:
     """The primitives of a scene, collected into one mesh."""
 
-    def __init__(self, buffers: Buffers, materials: GltfMaterials, warnings: list[str]) -> None:
+    def __init__(
+        self,
+        buffers: Buffers,
+        materials: GltfMaterials,
+        draco: DracoPrimitives,
+        warnings: list[str],
+    ) -> None:
         self._buffers = buffers
         self._materials = materials
+        self._draco = draco
         self._warnings = warnings
         self._positions = _Rows()
         self._uvs = _Rows()
@@ -110,8 +114,11 @@ class _Scene:
         if mode not in (_TRIANGLES, _STRIP, _FAN) or attributes.get("POSITION") is None:
             self._warn(f"{primitive.place}: left out, not a primitive of triangles")
             return
+        unpacked = self._draco.unpack(primitive)  # before anything asks for its accessors
         first, count = self._place_positions(primitive, shown, number)
-        once = _triangles(self._corner_indices(primitive, count), mode, primitive)
+        if unpacked is not None:
+            mode = _TRIANGLES  # whatever they were before
+        once = _triangles(self._corner_indices(primitive, unpacked, count), mode, primitive)
         self._expect_moderate(primitive, len(shown.matrices) * len(once))
         faces = np.concatenate([np.zeros((0, 3), np.int64), *_turned(once, shown)])
         starts = first + count * np.arange(len(shown.matrices))
@@ -144,9 +151,8 @@ class _Scene:
         """First row and number of rows; primitives of a node often share an accessor."""
         attributes = primitive.need("attributes")
         accessor = attributes.integer("POSITION")
-        skinning = [attributes.optional(each) for each in _SKINNING]
         morphed = primitive.path if any(shown.weights) else ""
-        key = (number, accessor, *skinning, morphed)
+        key = (number, accessor, *_influences(attributes), morphed)
         local = self._buffers.numbers(accessor, 3)
         self._expect_moderate(primitive, len(shown.matrices) * len(local))
         if key not in self._positions.starts:
@@ -176,15 +182,18 @@ class _Scene:
     def _skinned(
         self, attributes: Element, local: Float64Array, matrices: Float64Array
     ) -> Float64Array:
-        """Positions (n, 3) by the first four joints of each; unchanged without joints."""
-        if attributes.get("JOINTS_0") is None or attributes.get("WEIGHTS_0") is None:
+        """Positions (n, 3) by the joints of each; unchanged without joints."""
+        pairs = _influences(attributes)
+        if not pairs:
             return local
-        if attributes.get("JOINTS_1") is not None:
-            self._warn(f"{attributes.file}: left out joints beyond four a vertex")
-        joints = self._buffers.integers(attributes.integer("JOINTS_0"), 4)
-        weights = self._buffers.numbers(attributes.integer("WEIGHTS_0"), 4)
-        if not len(joints) == len(weights) == len(local):
-            attributes.fail(f"{len(local)} joints and weights", (len(joints), len(weights)))
+        read = [
+            (self._buffers.integers(joints, 4), self._buffers.numbers(weights, 4))
+            for joints, weights in pairs
+        ]
+        counts = {len(each) for pair in read for each in pair}
+        if counts != {len(local)}:
+            attributes.fail(f"{len(local)} joints and weights", sorted(counts))
+        joints, weights = (np.hstack(each) for each in zip(*read, strict=True))
         used = joints[weights != 0]
         if used.size and used.max() >= len(matrices):
             attributes.fail(f"joints below {len(matrices)}", int(used.max()))
@@ -219,11 +228,16 @@ class _Scene:
             )
         return replace(source, texcoord=0)
 
-    def _corner_indices(self, primitive: Element, count: int) -> Int64Array:
+    def _corner_indices(
+        self, primitive: Element, unpacked: Int64Array | None, count: int
+    ) -> Int64Array:
         accessor = primitive.optional("indices")
-        if accessor is None:
+        if unpacked is not None:
+            indices = unpacked
+        elif accessor is None:
             return np.arange(count)
-        indices = self._buffers.indices(accessor)
+        else:
+            indices = self._buffers.indices(accessor)
         if indices.size and indices.max() >= count:
             primitive.fail(f"vertex indices below {count}", int(indices.max()))
         return indices
@@ -245,6 +259,17 @@ class _Scene:
     def _warn(self, warning: str) -> None:
         if warning not in self._warnings:
             self._warnings.append(warning)
+
+
+def _influences(attributes: Element) -> list[tuple[int, int]]:
+    """The accessors of joints and weights, four of each vertex in a pair, as many as there are."""
+    pairs: list[tuple[int, int]] = []
+    while True:
+        keys = (f"JOINTS_{len(pairs)}", f"WEIGHTS_{len(pairs)}")
+        joints, weights = (attributes.optional(key) for key in keys)
+        if joints is None or weights is None:
+            return pairs
+        pairs.append((joints, weights))
 
 
 def _transformed(local: Float64Array, matrices: Float64Array) -> Float64Array:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import base64
 import struct
+from importlib.util import find_spec
 from typing import Any
 from urllib.parse import unquote, unquote_to_bytes
 
@@ -13,6 +14,7 @@ from nispcodec.core.arrays import AnyArray, Float64Array, Int64Array
 from nispcodec.core.errors import MeshError
 from nispcodec.io.folder import Folder
 from nispcodec.io.read.gltf_json import Element
+from nispcodec.io.read.gltf_meshopt import compression, decompress
 
 _COMPONENTS: dict[int, np.dtype[Any]] = {
     5120: np.dtype("i1"),
@@ -93,15 +95,42 @@ class Buffers:
         self._binary = binary
         self._folder = folder
         self._read: dict[int, bytes] = {}
+        self._decompressed: dict[int, bytes] = {}
+        self._filled: dict[int, AnyArray] = {}
+
+    def fill(self, index: int, values: AnyArray) -> None:
+        """Let accessor `index` have values (n, width) that the file holds in another way."""
+        known = self._filled.setdefault(index, values)
+        if known is not values and not np.array_equal(known, values):
+            self._root.entry("accessors", index).fail(
+                "the same values by all that use it", "others"
+            )
 
     def view(self, index: int) -> memoryview:
-        """The bytes of buffer view `index`."""
+        """The bytes of buffer view `index`, decompressed."""
         view = self._root.entry("bufferViews", index)
-        offset, length = view.integer("byteOffset", 0), view.integer("byteLength")
-        buffer = self._buffer(view.integer("buffer"))
+        compressed = compression(view)
+        if compressed is None or self._has_fallback(view):
+            return self._stored(view)
+        if index not in self._decompressed:
+            length = view.integer("byteLength")
+            self._decompressed[index] = decompress(compressed, self._stored(compressed), length)
+        return memoryview(self._decompressed[index])
+
+    def _stored(self, part: Element) -> memoryview:
+        """The bytes that `part` names by its buffer, byteOffset and byteLength."""
+        offset, length = part.integer("byteOffset", 0), part.integer("byteLength")
+        buffer = self._buffer(part.integer("buffer"))
         if offset + length > len(buffer):
-            view.fail(f"an end within {len(buffer)} bytes", offset + length)
+            part.fail(f"an end within {len(buffer)} bytes", offset + length)
         return memoryview(buffer)[offset : offset + length]
+
+    def _has_fallback(self, view: Element) -> bool:
+        """Whether nothing here decompresses the view, but the file has it uncompressed too."""
+        if find_spec("meshoptimizer") is not None:
+            return False
+        buffer = self._root.entry("buffers", view.integer("buffer"))
+        return buffer.get("uri") is not None or compression(buffer) is None
 
     def numbers(self, index: int, width: int, finite: bool = True) -> Float64Array:
         """Accessor `index` as numbers (n, width) float64, which must be `finite` or need not.
@@ -109,7 +138,7 @@ class Buffers:
         Normalized integers become fractions (glTF 2.0, 3.6.2.2).
         """
         accessor = self._root.entry("accessors", index)
-        values = self._values(accessor, width)
+        values = self._values(index, accessor, width)
         usable = np.isfinite(values).all(axis=1)
         if finite and not usable.all():
             element = int(usable.argmin())
@@ -127,7 +156,7 @@ class Buffers:
     def integers(self, index: int, width: int) -> Int64Array:
         """Accessor `index`, which holds unsigned integers, as (n, width) int64."""
         accessor = self._root.entry("accessors", index)
-        values = self._values(accessor, width)
+        values = self._values(index, accessor, width)
         if values.dtype.kind != "u":
             accessor.fail("unsigned integers", values.dtype.name)
         return values.astype(np.int64)
@@ -150,10 +179,12 @@ class Buffers:
             buffer.fail(f"{length} bytes", f"{len(data)} bytes")
         return data[:length]
 
-    def _values(self, accessor: Element, width: int) -> AnyArray:
+    def _values(self, index: int, accessor: Element, width: int) -> AnyArray:
         kind = accessor.text("type", "")
         if _WIDTHS.get(kind) != width:
             accessor.fail(f"type {next(k for k, w in _WIDTHS.items() if w == width)}", kind)
+        if index in self._filled:
+            return _as_stated(accessor, self._filled[index], width)
         count = accessor.integer("count")
         if accessor.get("bufferView") is None:
             if count > _MOST_ZEROS:
@@ -186,6 +217,17 @@ class Buffers:
         filled = base.copy()
         filled[places] = self._elements(values, count, base.dtype, base.shape[1])
         return filled
+
+
+def _as_stated(accessor: Element, values: AnyArray, width: int) -> AnyArray:
+    """Values (n, width) in the type of number that the accessor says, which must hold them."""
+    if values.ndim != 2 or values.shape[1] != width:
+        accessor.fail(f"{width} numbers in each element", values.shape[1:])
+    with np.errstate(invalid="ignore"):
+        stated = values.astype(_component(accessor))
+    if not np.array_equal(stated, values, equal_nan=True):
+        accessor.fail(f"numbers that fit {stated.dtype.name}", values.dtype.name)
+    return stated
 
 
 def _component(element: Element) -> np.dtype[Any]:

@@ -10,6 +10,9 @@ from typing import NoReturn
 
 from nispcodec.core.errors import MeshError
 
+# Instances and compression multiply what a small file holds: no more vertices or faces than this.
+LARGEST = 20_000_000
+
 
 def parse_json(data: bytes, name: str) -> Element:
     """The root object of a JSON text. Raises MeshError, naming the file `name`, for other text."""

@@ -22,6 +22,7 @@ from nispcodec.io.read.names import material_name
 _WRAPS = {10497: "repeat", 33071: "clamp", 33648: "mirror"}
 _FILTERS = {9728: "nearest", 9729: "linear"}
 _IMAGE_EXTENSIONS = ("EXT_texture_webp", "EXT_texture_avif")
+_BASISU = "KHR_texture_basisu"
 _GLOSSY = "KHR_materials_pbrSpecularGlossiness"
 
 
@@ -112,13 +113,7 @@ class GltfMaterials:
 
     def _map(self, slot: str, info: Element) -> TextureMap | None:
         texture = self._root.entry("textures", info.integer("index"))
-        image = self._image_index(texture)
-        if image is None:
-            self._warnings.append(f"{texture.place}: holds no image that we can read")
-            return None
-        if image not in self._images:
-            self._images[image] = self._image(image)
-        place = self._images[image]
+        place = self._place(texture)
         if place is None:
             return None
         key = BY_NAME[slot].gltf_strength
@@ -126,12 +121,25 @@ class GltfMaterials:
         wrap, texture_filter = self._sampling(texture)
         return TextureMap(place, wrap, texture_filter, strength)
 
-    def _image_index(self, texture: Element) -> int | None:
-        for name in _IMAGE_EXTENSIONS:
-            extension = texture.extension(name)
-            if extension is not None:
-                return extension.integer("source")
-        return texture.optional("source")
+    def _place(self, texture: Element) -> int | None:
+        """The place on the shelf of the first of a texture's images that can be read."""
+        images = self._image_indices(texture)
+        if not images:
+            self._warnings.append(f"{texture.place}: holds no image that we can read")
+        for image in images:
+            if image not in self._images:
+                self._images[image] = self._image(image)
+            if self._images[image] is not None:
+                return self._images[image]
+        return None
+
+    def _image_indices(self, texture: Element) -> list[int]:
+        """The same picture as WebP, AVIF, PNG or JPEG, or KTX2; what `source` has is the whole."""
+        found = [(texture.extension(name), name) for name in (*_IMAGE_EXTENSIONS, _BASISU)]
+        indices = {name: each.integer("source") for each, name in found if each is not None}
+        basisu = indices.pop(_BASISU, None)
+        ordered = [*indices.values(), texture.optional("source"), basisu]
+        return [index for index in ordered if index is not None]
 
     def _image(self, index: int) -> int | None:
         image = self._root.entry("images", index)

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from itertools import takewhile
 
+from nispcodec.core.errors import MeshError
 from nispcodec.io.read import wavefront
 
 _VALUES = ("kd", "ke", "d", "tr", "pr", "pm")
@@ -56,8 +57,8 @@ class MtlMaterial:
 def parse_mtl(data: bytes, name: str, warnings: list[str]) -> dict[str, MtlMaterial]:
     """The materials of an MTL file by name.
 
-    Values of NaN or infinity are left out, with new `warnings`. Raises MeshError, naming the file
-    `name` and the line, for a value that is no number.
+    Values that are no finite numbers are left out, with new `warnings` that name the file `name`
+    and the line.
     """
     materials: dict[str, MtlMaterial] = {}
     current = MtlMaterial("")
@@ -68,10 +69,10 @@ def parse_mtl(data: bytes, name: str, warnings: list[str]) -> dict[str, MtlMater
             current = MtlMaterial(wavefront.rest(line))
             materials[current.name] = current
         elif keyword in _VALUES:
-            if wavefront.not_finite(line.split()[1:]):
-                warnings.append(f"{place}: {keyword} is no finite number: left out")
-                continue
-            current.values |= _values(keyword, line, place)
+            try:
+                current.values |= _values(keyword, line, place)
+            except MeshError as why:
+                warnings.append(f"{why}: {keyword} left out")
         elif keyword in _MAPS or keyword.startswith("map_"):
             current.maps[keyword] = _map_statement(line, place)
     return materials

@@ -82,7 +82,7 @@ class MaterialReader:
             self._libraries.add(path)
             found = parse_mtl(self._folder.read(path), path.name, self._warnings)
             self._known.update(found)
-            self._folders.update(dict.fromkeys(found, Folder(path.parent)))
+            self._folders.update(dict.fromkeys(found, self._folder.beside(path)))
             for name in found:
                 for short in wavefront.without_comments(name)[1:]:
                     self._commented.setdefault(short, set()).add(name)

@@ -22,7 +22,7 @@ def test_every_value_has_its_row_and_column() -> None:
 
 
 def test_more_values_than_a_row_holds_are_refused() -> None:
-    with pytest.raises(FormatError, match="row count: expected at most 2, found 3"):
+    with pytest.raises(FormatError, match="row_count: expected at most 2, found 3"):
         csr.decode(Reader("NETS", b"\x03" + bytes(9)), (1, 2), symbols=True)
     with pytest.raises(FormatError, match="column: expected below 2, found 2"):
         csr.decode(Reader("NETS", b"\x02\x00\x01\x03\x07\x07"), (1, 2), symbols=True)

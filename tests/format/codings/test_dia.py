@@ -31,9 +31,9 @@ def test_it_holds_the_diagonals_that_are_not_zero_from_the_lower_left(
 @pytest.mark.parametrize(
     ("payload", "text"),
     [
-        (b"\x05", "diagonal count: expected at most 4, in the fewest bytes, found 5"),
+        (b"\x05", "diagonal_count: expected at most 4, in the fewest bytes, found 5"),
         (b"\x02\x03\x00", "diagonal: expected at most 3, found 4"),
-        (b"\x01\x04", "diagonal gap: expected at most 3, found 4"),
+        (b"\x01\x04", "diagonal_gap: expected at most 3, found 4"),
     ],
 )
 def test_diagonals_outside_the_matrix_are_refused(payload: bytes, text: str) -> None:

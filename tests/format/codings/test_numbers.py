@@ -43,7 +43,7 @@ def test_the_kind_must_be_of_the_sort_that_is_wanted(kind: str) -> None:
     assert found.shape == (1,)
     assert found.dtype == (np.int32 if whole else np.float32)
     wanted = "float32, float16" if whole else "int8, int16, int32"
-    with pytest.raises(FormatError, match="number kind: expected one of") as caught:
+    with pytest.raises(FormatError, match="number_kind: expected one of") as caught:
         numbers.decode(Reader("NETS", data), 1, symbols=not whole)
     assert set(str(caught.value.expected).removeprefix("one of ").split(", ")) == set(
         wanted.split(", ")

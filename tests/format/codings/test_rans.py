@@ -52,7 +52,7 @@ def test_broken_streams_are_refused(count: int) -> None:
     data = coins([1] * count)
     with pytest.raises(FormatError, match="words: expected as many as the tokens need"):
         rans.decode(Reader("NETS", data[:-2]), [(count, EVEN)])
-    with pytest.raises(FormatError, match="final state: expected 65536"):
+    with pytest.raises(FormatError, match="final_state: expected 65536"):
         rans.decode(Reader("NETS", data[:-2] + b"\x55\x55"), [(count, EVEN)])
 
 

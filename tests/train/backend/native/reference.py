@@ -35,10 +35,6 @@ CASES: dict[str, tuple[NetworkSpec, str]] = {
     "charts": (NetworkSpec((30,) * 3, 40), "chart"),
     "two charts, mirrored": (NetworkSpec((18,) * 2, 2, mirror=0b110110), "chart"),
     "uv": (NetworkSpec((22,) * 4, 2), "uv"),
-    "uv, embedding": (
-        NetworkSpec((22,) * 3, 2, conditioning="embedding", charts=7, embedding=5),
-        "uv",
-    ),
     "uv, one chart": (
         NetworkSpec((22,) * 4, 2, conditioning="chart_affine", charts=1, embedding=4),
         "uv",

@@ -50,7 +50,7 @@ def test_trainers_free_their_memory() -> None:
         (NetworkSpec((8,), 2), "sdf", "muon", "2 outputs"),
         (NetworkSpec((8,), 3), "uv", "muon", "3 outputs"),
         (
-            NetworkSpec((8,), 1, conditioning="embedding", charts=3, embedding=2),
+            NetworkSpec((8,), 1, conditioning="chart_affine", charts=3, embedding=2),
             "sdf",
             "muon",
             "charts",

@@ -18,7 +18,6 @@ SPECS = {
     "relu tanh": NetworkSpec((5,), 1, activation="relu", output="tanh"),
     "fourier sigmoid": NetworkSpec((6,), 2, "fourier", 4, w0=1.0, output="sigmoid"),
     "scalar": NetworkSpec((6,), 2, "fourier", 3, "scalar", charts=5, w0=1.0),
-    "embedding": NetworkSpec((6, 6), 2, conditioning="embedding", charts=5, embedding=3),
     "frames": NetworkSpec(
         (6, 6), 2, conditioning="chart_affine", charts=5, embedding=3, mirror=0b011011
     ),

@@ -27,14 +27,14 @@ class Pool {
     int threads() const { return static_cast<int>(workers_.size()) + 1; }
 
     // Calls task(number, worker) for the numbers from 0 to count - 1, below 2^15; returns
-    // when all are done. The caller is worker 0.
+    // when all are done. The caller is worker 0. A task may not throw, and so may ask for no memory.
     template <class Task>
-    void run(int count, Task task) {
+    void run(int count, const Task& task) {
         if (workers_.empty() || count <= 1) {
             for (int number = 0; number < count; number++) task(number, 0);
             return;
         }
-        task_ = task;
+        task_ = std::cref(task);  // A copy could need memory.
         done_.store(0, std::memory_order_relaxed);
         const uint64_t job = job_of(state_.load(std::memory_order_relaxed)) + 1;
         {

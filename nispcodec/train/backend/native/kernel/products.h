@@ -112,10 +112,10 @@ inline void reflect(float* row, const float* reflector, float strength, int firs
 }
 
 // Makes the rows of a square matrix orthonormal by Householder's reflections, first to last, as the
-// Q of a QR decomposition whose columns these rows are. `reflectors` is of the same size.
-inline void orthonormalize(Matrix& rows, Matrix& reflectors) {
+// Q of a QR decomposition whose columns these rows are. `reflectors` is of the same size, `strengths`
+// has a number for each row.
+inline void orthonormalize(Matrix& rows, Matrix& reflectors, Buffer& strengths) {
     const int count = rows.rows, stride = rows.stride;
-    Buffer strengths(count);
     for (int k = 0; k < count; k++) {
         float* reflector = reflectors.row(k);
         const float strength = strengths[k] = reflection(rows.row(k), k, count, stride, reflector);

@@ -11,7 +11,10 @@ namespace nisp {
 // One side of the matrix: its covariance, and a basis in which that is about diagonal.
 struct Side {
     Matrix covariance, basis, basis_transposed;
+    // Everything that a refresh needs is here from the start: it runs in a thread of the pool, where
+    // nobody could be told that there is no memory.
     Matrix next, reflectors;
+    Buffer eigenvalues, strengths;
     std::vector<int> order;  // of the basis before the last refresh
 
     explicit Side(int size)
@@ -20,6 +23,8 @@ struct Side {
           basis_transposed(size, size),
           next(size, size),
           reflectors(size, size),
+          eigenvalues(size),
+          strengths(size),
           order(size) {}
 
     // covariance += share * (matrix transposed - covariance)
@@ -37,14 +42,13 @@ struct Side {
         sort();
         for (int i = 0; i < basis.rows; i++)
             std::copy_n(next.row(order[i]), next.stride, basis_transposed.row(i));
-        orthonormalize(basis_transposed, reflectors);
+        orthonormalize(basis_transposed, reflectors, strengths);
         transpose(basis_transposed, basis);
     }
 
    private:
     // Insertion: few numbers, almost in order, and it stands numbers that are none.
     void sort() {
-        std::vector<float> eigenvalues(order.size());
         for (size_t i = 0; i < order.size(); i++) {
             const int row = static_cast<int>(i);
             eigenvalues[i] = dot(basis_transposed.row(row), next.row(row), 0, next.stride);

@@ -1,0 +1,1 @@
+"""Benchmarks of whole catalogues: speed, bookkeeping, chaos."""

@@ -1,0 +1,1 @@
+"""Where assets are encoded: processes of this machine, or the tasks of a Ray cluster."""

@@ -1,0 +1,121 @@
+"""Networks or triangles: whichever takes fewer bytes at equal errors."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+from nispcodec.core.document import Document
+from nispcodec.core.errors import FitError, NispError
+from nispcodec.core.mesh_part import MeshPart
+from nispcodec.encode.config import EncodeConfig, FormConfig
+from nispcodec.encode.mesh_form import MeshForm
+from nispcodec.format import inspect, pack
+from nispcodec.format.constants import TXTR
+from nispcodec.simplify.errors import Errors
+from nispcodec.simplify.ladder import Candidate
+
+
+@dataclass(frozen=True)
+class Chosen:
+    """A document, what its surface is off, and about how many bytes the other form would take.
+
+    `other_bytes` is 0 where only one form was asked for.
+    """
+
+    document: Document
+    errors: Errors
+    other_bytes: float = 0.0
+
+
+class Choice:
+    """Of one asset: asked before its networks are fitted, when their size is known, and after.
+
+    With `geometry` "auto", the form that is estimated to be clearly larger is not made at all.
+    """
+
+    def __init__(self, form: MeshForm, config: EncodeConfig, forms: FormConfig) -> None:
+        self._form, self._config, self._forms = form, config, forms
+        self._estimate, self._field_bytes = 0.0, 0.0
+
+    def wants_field(self, size: float, probe_error: float) -> bool:
+        """Whether networks of about so many bytes may be the better form.
+
+        `probe_error` is the held-out error of the SDF's probe, normalized frame.
+        """
+        if not self._open or self._config.target_size or self._config.target_error:
+            return True
+        forms = self._forms
+        self._field_bytes = size
+        distance = forms.fitted * probe_error
+        self._estimate = self._form.estimate(distance, forms.surely_larger * size)
+        return self._estimate > forms.surely_smaller * size
+
+    def after_fit(self, field: Document, errors: Errors) -> Chosen:
+        """The fitted field, whose surface has these errors, or triangles that are better."""
+        size = own_bytes(field)
+        if not self._open or self._estimate > self._forms.surely_larger * size:
+            return Chosen(field, errors, self._estimate)
+        found = self._rival(size, errors)
+        if found is None:
+            return Chosen(field, errors)
+        meshes = replace(field, field=None, meshes=(found.part,))
+        other = own_bytes(meshes)
+        if self._config.target_size and found.errors.distance < errors.distance:
+            return Chosen(meshes, found.errors, size)
+        if not self._config.target_size and other < size:
+            return Chosen(meshes, found.errors, size)
+        return Chosen(field, errors, other)
+
+    def triangles(self, document: Callable[[MeshPart], Document]) -> Chosen:
+        """The asset as triangles, as near as the preset or the target asks.
+
+        Raises FitError for a target error that they miss, NispError for a target size that is too
+        small.
+        """
+        found = self._wanted(document)
+        return Chosen(document(found.part), found.errors, self._field_bytes)
+
+    def _rival(self, size: int, errors: Errors) -> Candidate | None:
+        """Triangles to set against a fitted field: no worse, or of no more bytes."""
+        if self._config.target_size:
+            return self._form.of_size(size)
+        if self._config.target_error:
+            return self._form.within(self._config.target_error, errors.uv)
+        if self._form.estimate(errors.distance, size) >= size:
+            return None
+        return self._form.best(errors.distance, size)
+
+    def _wanted(self, document: Callable[[MeshPart], Document]) -> Candidate:
+        config, forms = self._config, self._forms
+        if config.target_error:
+            found = self._form.within(config.target_error, math.inf)
+            if found is None:
+                raise FitError(
+                    f"target error: expected {config.target_error:g}, found no mesh as near"
+                )
+            return found
+        nearest = forms.most_distance[config.preset]
+        if not config.target_size:
+            return self._form.best(nearest, self._field_bytes or math.inf)
+        least = self._form.of_size(0.0)
+        besides = own_bytes(document(least.part)) - least.size
+        found = self._form.of_size(config.target_size - besides)
+        if besides + found.size > config.target_size:
+            raise NispError(
+                f"target size: expected at least {besides + found.size:,} bytes for this asset's "
+                f"triangles, found {config.target_size:,.0f}"
+            )
+        return found
+
+    @property
+    def _open(self) -> bool:
+        config = self._config
+        return config.geometry == "auto" and config.preset != "paper" and not config.prune
+
+
+def own_bytes(document: Document) -> int:
+    """Of a file, without its images."""
+    data = pack(document)
+    return len(data) - sum(each.stored_length for each in inspect(data) if each.code == TXTR)

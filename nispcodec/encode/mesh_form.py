@@ -1,0 +1,144 @@
+"""An asset held as triangles: what that costs, and the best of it, found as far as is needed."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import replace
+from functools import cached_property
+from math import log
+
+import numpy as np
+
+from nispcodec.core.document import Document
+from nispcodec.core.mesh_part import MeshPart
+from nispcodec.core.progress import Listener, Progress
+from nispcodec.encode.config import FormConfig
+from nispcodec.extract.meshing import textured_mesh
+from nispcodec.format import mesh
+from nispcodec.geometry.analysis import Analysis
+from nispcodec.geometry.shown import shown
+from nispcodec.simplify.errors import Errors
+from nispcodec.simplify.ladder import Candidate, Simplifier
+from nispcodec.simplify.search import best_for
+from nispcodec.simplify.triangles import Triangles
+
+
+def coded_bytes(part: MeshPart) -> int:
+    """What a part adds to a file."""
+    return len(mesh.encode((part,)))
+
+
+class MeshForm:
+    """The faces of an asset that can be seen, as candidates for one mesh part.
+
+    Distances are means in the normalized frame, UV errors means in the asset's UV.
+    """
+
+    def __init__(
+        self, analysis: Analysis, seed: int, config: FormConfig, progress: Listener
+    ) -> None:
+        self._analysis, self._seed, self._config = analysis, seed, config
+        self._progress = progress
+        self._made: list[Candidate] = []
+
+    @cached_property
+    def simplifier(self) -> Simplifier:
+        """Of the faces that can be seen."""
+        found = shown(self._analysis)
+        triangles = Triangles.of(found.mesh, self._analysis.frame, found.faces, found.sheet)
+        return Simplifier.of(triangles, coded_bytes, self._config.ladder, self._seed)
+
+    def errors(self, document: Document) -> Errors:
+        """What the surface that a document decodes to is off."""
+        self._progress(Progress(stage="surface"))
+        mesh, _ = textured_mesh(document)
+        positions = document.frame.to_normalized(mesh.positions)
+        return self.simplifier.original.errors(replace(mesh, positions=positions))
+
+    def estimate(self, distance: float, enough: float) -> float:
+        """About how many bytes the asset takes at a mean distance; `enough` or more is enough.
+
+        From candidates of more and more faces, up to the first that is as near or as large.
+        """
+        self._progress(Progress(stage="triangles"))
+        before: Candidate | None = None
+        for found in self._rising(enough):
+            if found.errors.distance <= distance:
+                break
+            before = found
+        if found.errors.distance > distance:
+            return max(enough, found.size)
+        if before is None:
+            return found.size
+        return _between(before, found, distance)
+
+    def best(self, most_distance: float, most_bytes: float) -> Candidate:
+        """The candidate with the least sum of the logarithms of bytes and errors, as weighted.
+
+        Of those within both limits, if any, else of those within the limit of the distance.
+        """
+        self._progress(Progress(stage="triangles"))
+        found = [*self._rising(most_bytes), *self._whole(most_bytes)]
+        near = [each for each in found if each.errors.distance <= most_distance] or found
+        within = [each for each in near if each.size <= most_bytes] or near
+        return min(within, key=self._cost)
+
+    def _rising(self, most_bytes: float) -> Iterator[Candidate]:
+        """Candidates of more and more faces, up to the first of so many bytes; each made once."""
+        everything = len(self.simplifier.source.triangles)
+        faces, number = min(self._config.ladder.fewest, everything), 0
+        while True:
+            if number == len(self._made):
+                self._made.append(self.simplifier.balanced(faces))
+            found = self._made[number]
+            yield found
+            if found.size >= most_bytes or faces == everything:
+                return
+            # Where fewer faces cannot be had than these, the next are to be more.
+            faces = min(everything, round(self._config.growth * max(faces, found.faces)))
+            number += 1
+
+    def _whole(self, most_bytes: float) -> Iterator[Candidate]:
+        """Every face, rounded to several errors, where that may be had for so many bytes."""
+        everything = len(self.simplifier.source.triangles)
+        if everything * self._config.least_bytes_per_face > most_bytes:
+            return
+        uv_bits = self.simplifier.uv_bits_for(self._config.negligible_uv)
+        for coarseness in self._config.coarseness:
+            bits = self.simplifier.bits_for(coarseness * self._config.negligible)
+            yield self.simplifier.candidate(everything, bits, uv_bits)
+
+    def within(self, distance: float, uv: float) -> Candidate | None:
+        """The fewest bytes at these errors at most; None where there is no such candidate."""
+        self._progress(Progress(stage="triangles"))
+        return best_for(self.simplifier, distance, uv)
+
+    def of_size(self, most_bytes: float) -> Candidate:
+        """The nearest candidate found of at most so many bytes; the smallest where none is."""
+        self._progress(Progress(stage="triangles"))
+        few, many = float(self._config.ladder.fewest), float(len(self.simplifier.source.triangles))
+        best = self.simplifier.balanced(round(min(few, many)))
+        for _ in range(self._config.size_trials):
+            found = self.simplifier.balanced(round(math.sqrt(few * many)))
+            if found.size > most_bytes:
+                many = math.sqrt(few * many)
+            else:
+                few = math.sqrt(few * many)
+                best = min(best, found, key=lambda each: each.errors.distance)
+        return best
+
+    def _cost(self, candidate: Candidate) -> float:
+        config, errors = self._config, candidate.errors
+        return (
+            log(candidate.size)
+            + config.distance_weight * log(max(errors.distance, config.negligible))
+            + config.uv_weight * log(max(errors.uv, config.negligible_uv))
+        )
+
+
+def _between(before: Candidate, after: Candidate, distance: float) -> float:
+    """Bytes at a distance between those of two candidates, as a power of it."""
+    far, near = before.errors.distance, max(after.errors.distance, np.finfo(float).tiny)
+    share = math.log(far / distance) / math.log(far / near)
+    return before.size * (after.size / before.size) ** share

@@ -1,0 +1,63 @@
+"""The faces of a mesh that can be seen from outside, turned as their bodies are."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from nispcodec.core.arrays import BoolArray
+from nispcodec.core.asset import TexturedMesh
+from nispcodec.core.connectivity import connected_faces
+from nispcodec.geometry.analysis import Analysis
+from nispcodec.geometry.triangles import area, normals
+from nispcodec.geometry.welding import welded
+
+
+@dataclass(frozen=True)
+class Shown:
+    """An asset's mesh, world frame, and which of its faces a file has to hold.
+
+    mesh   the asset's, faces wound the wrong way within their body turned
+    faces  (m,) bool: not hidden inside other bodies
+    sheet  (m,) bool: open surfaces, which have no inside
+    """
+
+    mesh: TexturedMesh
+    faces: BoolArray
+    sheet: BoolArray
+
+
+def shown(analysis: Analysis) -> Shown:
+    """What an analysis found of the faces: the pieces of its solid tell."""
+    mesh, solid = analysis.mesh, analysis.solid
+    count = len(mesh.faces)
+    own = normals(mesh.corners)[solid.parents]
+    against = np.einsum("nk,nk->n", own, solid.normals) < 0
+    turned = _any(solid.parents[against], count)
+    sheet = _any(solid.parents[solid.open_surface], count)
+    walls = _any(solid.parents[solid.wall & ~solid.open_surface], count)
+    flipped = replace(
+        mesh,
+        faces=np.where(turned[:, None], mesh.faces[:, ::-1], mesh.faces),
+        uv_faces=np.where(turned[:, None], mesh.uv_faces[:, ::-1], mesh.uv_faces),
+    )
+    faces = _any(solid.parents, count)
+    return Shown(flipped, faces, _by_body(flipped, faces, sheet & ~walls))
+
+
+def _by_body(mesh: TexturedMesh, faces: BoolArray, sheet: BoolArray) -> BoolArray:
+    """Bodies (of the faces that are left) are sheets as a whole, when most of their area is."""
+    chosen = np.flatnonzero(faces)
+    bodies = connected_faces(welded(mesh).positions[chosen])
+    areas = area(mesh.corners[chosen])
+    most = np.bincount(bodies, areas * sheet[chosen]) > np.bincount(bodies, areas) / 2
+    found = np.zeros(len(faces), np.bool_)
+    found[chosen] = most[bodies]
+    return found
+
+
+def _any(faces: np.ndarray, count: int) -> BoolArray:
+    found = np.zeros(count, np.bool_)
+    found[faces] = True
+    return found

@@ -1,0 +1,97 @@
+"""A tree of boxes around triangles, the same for every search."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from nispcodec.core.arrays import BoolArray, Float64Array, Int32Array, IntArray
+from nispcodec.infer.triangles import ROWS, triangle_rows
+
+BRANCHES = 8
+"""Children of a node and triangles of a leaf: as many as a processor compares at a time."""
+
+
+@dataclass(frozen=True)
+class MeshTree:
+    """Triangles in leaves of BRANCHES, and boxes around them, level by level from the root.
+
+    boxes      one array (nodes, 6, BRANCHES) float64 a level: the least x, y, z of the node's
+               children, then the greatest. Child k of node i is node BRANCHES * i + k of the next
+               level, or that leaf. A child with nothing in it has its least at infinity
+    triangles  (leaves, ROWS, BRANCHES) float64, see `nispcodec.infer.triangles`
+    faces      (leaves, BRANCHES) int32: their numbers. A leaf that is not full has its first
+               triangle again; one with nothing in it has face 0
+    solid      (leaves, BRANCHES) bool: whether the place counts for what is inside
+    """
+
+    boxes: tuple[Float64Array, ...]
+    triangles: Float64Array
+    faces: Int32Array
+    solid: BoolArray
+
+    @staticmethod
+    def of(corners: Float64Array, sheet: BoolArray) -> MeshTree:
+        """The tree of triangles (f, 3, 3), at least one; those of sheets (f,) are not solid."""
+        order = _leaves(corners)
+        there = order >= 0
+        faces = np.maximum(np.where(there, order, order[:, :1]), 0)
+        triangles = triangle_rows(corners[faces.ravel()]).reshape(ROWS, -1, BRANCHES)
+        return MeshTree(
+            boxes=_levels(_leaf_boxes(corners[faces], there[:, 0])),
+            triangles=np.ascontiguousarray(triangles.transpose(1, 0, 2)),
+            faces=faces.astype(np.int32),
+            solid=there & ~sheet[faces],
+        )
+
+
+NOTHING = np.repeat([np.inf, -np.inf], 3)
+"""The box around nothing."""
+
+
+def _leaves(corners: Float64Array) -> IntArray:
+    """(leaves, BRANCHES) numbers of triangles that are near each other; -1: nothing.
+
+    The triangles are halved along the longest side of the box of their centers, again and again.
+    """
+    count = len(corners)
+    depth = max(0, int(np.ceil(np.log2(count / BRANCHES))))
+    centers = np.full((BRANCHES << depth, 3), np.inf)
+    centers[:count] = (corners.min(axis=1) + corners.max(axis=1)) * 0.5
+    groups: IntArray = np.arange(len(centers))[None]
+    for _ in range(depth):
+        groups = _halved(groups, centers)
+    leaves = np.sort(groups, axis=1)
+    return np.where(leaves < count, leaves, -1)
+
+
+def _halved(groups: IntArray, centers: Float64Array) -> IntArray:
+    """Groups (g, size) of indices of centers, each halved along its longest side: (2 g, ...)."""
+    members = centers[groups]
+    finite = np.isfinite(members)
+    high = np.where(finite, members, -np.inf).max(axis=1)
+    axis = (high - members.min(axis=1)).argmax(axis=1)
+    along = np.take_along_axis(members, axis[:, None, None], axis=2)[:, :, 0]
+    half = groups.shape[1] // 2
+    order = np.argpartition(along, half, axis=1)
+    return np.take_along_axis(groups, order, axis=1).reshape(-1, half)
+
+
+def _leaf_boxes(corners: Float64Array, there: BoolArray) -> Float64Array:
+    """(leaves, 6): around triangles (leaves, BRANCHES, 3, 3); at infinity where nothing is."""
+    boxes = np.concatenate([corners.min(axis=(1, 2)), corners.max(axis=(1, 2))], axis=1)
+    boxes[~there] = NOTHING
+    return boxes
+
+
+def _levels(boxes: Float64Array) -> tuple[Float64Array, ...]:
+    """All levels, the root first, from the leaves' boxes (leaves, 6)."""
+    levels: list[Float64Array] = []
+    while not levels or len(boxes) > 1:
+        missing = -len(boxes) % BRANCHES
+        boxes = np.concatenate([boxes, np.tile(NOTHING, (missing, 1))])
+        nodes = boxes.reshape(-1, BRANCHES, 6)
+        levels.insert(0, np.ascontiguousarray(nodes.transpose(0, 2, 1)))
+        boxes = np.concatenate([nodes[:, :, :3].min(axis=1), nodes[:, :, 3:].max(axis=1)], axis=1)
+    return tuple(levels)

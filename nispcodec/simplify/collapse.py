@@ -1,0 +1,110 @@
+"""Edges collapsed by quadrics that heed UVs (Garland and Heckbert 1998, Hoppe 1999)."""
+
+from __future__ import annotations
+
+import ctypes
+from dataclasses import replace
+
+import numpy as np
+
+from nispcodec.core.arrays import Float64Array, Int64Array
+from nispcodec.core.connectivity import cell_ids
+from nispcodec.core.extras import require
+from nispcodec.simplify.config import CollapseConfig
+from nispcodec.simplify.triangles import Triangles, joined
+
+PRUNE = 8
+"""The library's option to drop bodies that are smaller than the error."""
+
+
+def collapsed(
+    triangles: Triangles, faces: int, config: CollapseConfig = CollapseConfig()
+) -> Triangles:
+    """About `faces` triangles, as few as can be had; positions and UVs are some of the given ones.
+
+    Bodies smaller than the error are dropped, unless together they are a notable part of the area:
+    then none is, those of few faces are kept as they are, and there may be more than `faces`.
+    Raises NispError without meshoptimizer.
+    """
+    if faces >= len(triangles):
+        return triangles
+    require("meshoptimizer", extra="encode", what_for="simplifying")
+    found = _simplified(triangles, faces, PRUNE, config)
+    if found is not None and _lost(triangles, found) <= config.notable_area:
+        return found
+    bodies = triangles.bodies
+    cards = np.asarray(np.bincount(bodies)[bodies] <= config.card_faces)
+    if cards.all():
+        return triangles
+    rest = _simplified(triangles.only(~cards), max(faces - int(cards.sum()), 1), 0, config)
+    if rest is None:
+        return triangles
+    return joined(triangles.only(cards), rest) if cards.any() else rest
+
+
+def _simplified(
+    triangles: Triangles, faces: int, options: int, config: CollapseConfig
+) -> Triangles | None:
+    """None where no triangle is left."""
+    from meshoptimizer import simplify_with_attributes
+
+    _declare()
+    corners = cell_ids(triangles.patches[:, None], triangles.faces, triangles.uv_faces)
+    at = np.zeros(int(corners.max()) + 1, np.int64)
+    at[corners] = np.arange(corners.size).reshape(corners.shape)
+    positions = triangles.corners.reshape(-1, 3)[at]
+    extent = np.ptp(positions, axis=0).max()
+    indices = np.empty(corners.size, dtype=np.uint32)
+    count = simplify_with_attributes(
+        indices,
+        corners.ravel().astype(np.uint32),
+        ((positions - positions.min(axis=0)) / extent).astype(np.float32),
+        _attributes(triangles)[at].astype(np.float32),
+        np.full(2, config.uv_weight, dtype=np.float32),
+        target_index_count=3 * faces,
+        target_error=1.0,
+        options=options,
+    )
+    kept = at[indices[:count].astype(np.int64)].reshape(-1, 3)
+    return _rebuilt(triangles, kept) if count else None
+
+
+def _attributes(triangles: Triangles) -> Float64Array:
+    """(3 m, 2): the UV of each corner."""
+    return triangles.corner_uvs.reshape(-1, 2)
+
+
+def _rebuilt(triangles: Triangles, corners: Int64Array) -> Triangles:
+    """Faces of corners (k, 3), each a number of a corner among the 3 m of the given triangles."""
+    face = corners[:, 0] // 3
+    return replace(
+        triangles,
+        faces=triangles.faces.ravel()[corners],
+        uv_faces=triangles.uv_faces.ravel()[corners],
+        materials=triangles.materials[face],
+        patches=triangles.patches[face],
+        sheet=triangles.sheet[face],
+    ).compact()
+
+
+def _lost(before: Triangles, after: Triangles) -> float:
+    """The part of the area that is gone."""
+    return 1 - _area(after) / _area(before)
+
+
+def _area(triangles: Triangles) -> float:
+    a, b, c = np.moveaxis(triangles.corners, 1, 0)
+    return max(float(np.linalg.norm(np.cross(b - a, c - a), axis=1).sum()), np.finfo(float).tiny)
+
+
+def _declare() -> None:
+    # The binding forgets to declare this one function: without it, the call crashes.
+    from meshoptimizer._loader import lib
+
+    array, size = ctypes.c_void_p, ctypes.c_size_t
+    function = lib.meshopt_simplifyWithAttributes
+    function.restype = size
+    function.argtypes = [
+        array, array, size, array, size, size, array, size, array, size,
+        array, size, ctypes.c_float, ctypes.c_uint, array,
+    ]  # fmt: skip

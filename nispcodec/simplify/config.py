@@ -1,0 +1,127 @@
+"""The tuned numbers of simplification, each with its unit and reason; measured in decision 0215."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class CollapseConfig:
+    """How edges are collapsed.
+
+    uv_weight     error of one unit of UV against the asset's extent; between 1 and 10 distances
+                  hardly change, and UVs are better at 10
+    notable_area  share of the area that small bodies may lose before none may be dropped
+    card_faces    bodies of so few faces are kept as they are then: leaves, planks, bolts
+    """
+
+    uv_weight: float = 10.0
+    notable_area: float = 0.02
+    card_faces: int = 12
+
+
+@dataclass(frozen=True)
+class SolverConfig:
+    """When conjugate gradients end: closest points change after each solution anyway.
+
+    steps      at most
+    tolerance  the part of the residual that may remain
+    """
+
+    steps: int = 40
+    tolerance: float = 0.1
+
+
+@dataclass(frozen=True)
+class FitConfig:
+    """How positions and UVs are moved towards the source.
+
+    rounds       times that closest points are found and vertices moved
+    uv_rounds    times that UV errors are weighed anew
+    samples      points on each surface for every vertex that is moved
+    fewest       points at least; few vertices still need points on every part
+    most         points at most: time
+    sliding      weight of what lies along the surface against what lies across it: vertices slide,
+                 but not freely
+    seam_weight  weight of a seam's place against the surface's: at a wrong place, points beside it
+                 get UVs of another chart
+    seam_sliding weight of what lies along a seam, or off the surface, against what lies beside it
+    curve_samples  points on the source's borders, and seams, for every such edge
+    curve_fewest   points at least
+    softness     distances below this part of the mean count by their square, above by themselves
+    damping      weight of the last place, as part of the mean weight: for vertices no point speaks
+    uv_damping   the same for UVs
+    turn         cosine of the angle by which a face may turn in a round
+    halvings     of a move that turns faces over, before all of it is taken back
+    """
+
+    rounds: int = 8
+    uv_rounds: int = 5
+    samples: float = 12.0
+    fewest: int = 8000
+    most: int = 60000
+    sliding: float = 0.005
+    seam_weight: float = 0.5
+    seam_sliding: float = 0.02
+    curve_samples: float = 6.0
+    curve_fewest: int = 500
+    softness: float = 0.3
+    damping: float = 0.01
+    uv_damping: float = 0.001
+    turn: float = 0.3
+    halvings: int = 3
+    solver: SolverConfig = SolverConfig()
+
+
+@dataclass(frozen=True)
+class LadderConfig:
+    """Which candidates are made.
+
+    samples       points on each surface that errors are measured with
+    fewest        faces of the first rung
+    rungs         of a ladder for every factor of 256 in faces
+    step          of the grid, for a mean distance of 1: fewer faces save as much as fewer bits
+    uv_step       of the grid of UVs, for a UV error of 1
+    tolerance     mean distance below which rounding need not go, normalized frame
+    uv_tolerance  the same of UVs
+    crease_angle  radians: shading breaks over edges that turn by more; None: over none
+    """
+
+    samples: int = 20000
+    fewest: int = 150
+    rungs: float = 8.0
+    step: float = 1.8
+    uv_step: float = 1.8
+    tolerance: float = 5e-5
+    uv_tolerance: float = 1e-4
+    crease_angle: float | None = None
+    collapse: CollapseConfig = CollapseConfig()
+    fit: FitConfig = FitConfig()
+
+
+@dataclass(frozen=True)
+class SearchConfig:
+    """How the fewest faces within an error are found.
+
+    first       a search begins in the middle between so many faces and all
+    trials      face counts that are tried at most
+    close       the search ends where the error is within this share of the one asked for
+    slopes      of errors by faces, both as logarithms: the steepest and the flattest believed
+    uneven      how much farther from its limit the distance may be than the UVs, as a logarithm,
+                before finer positions are tried
+    fewer       the part of the faces that finer positions may save: that search begins between
+    helping     a bit more of UVs helps where the UV error falls below this part
+    uv_blur     UV error up to which UVs may be rounded at most, whatever is asked for: where the
+                mean is that of seams, what lies between them would be blurred; 1.5 pixels of 1,000
+    nearly_all  from this share of the faces on, all of them are tried too: nothing moves there
+    """
+
+    first: int = 100
+    trials: int = 7
+    close: float = 0.04
+    slopes: tuple[float, float] = (3.0, 0.4)
+    uneven: float = 0.15
+    fewer: float = 0.7
+    helping: float = 0.9
+    uv_blur: float = 1.5e-3
+    nearly_all: float = 0.6

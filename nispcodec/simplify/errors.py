@@ -1,0 +1,101 @@
+"""How far a part is from the original, as `nispcodec.metrics` measures it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from nispcodec.core.arrays import BoolArray
+from nispcodec.core.asset import Material, TexturedMesh
+from nispcodec.core.errors import MeshError
+from nispcodec.core.mesh_part import MeshPart
+from nispcodec.metrics.geometry import Matches
+from nispcodec.metrics.surface import Surface, SurfacePoints
+from nispcodec.metrics.uv import uv_errors
+from nispcodec.simplify.closest import Tree
+from nispcodec.simplify.triangles import Triangles
+
+
+@dataclass(frozen=True)
+class Errors:
+    """The larger of both directions; distances in the normalized frame, UVs in the asset's.
+
+    distance, uv  means; distance_p99, uv_median; 0 for UVs where the original has none
+    """
+
+    distance: float
+    distance_p99: float
+    uv: float
+    uv_median: float
+
+    def within(self, distance: float, uv: float) -> bool:
+        """Whether both means are at most so large."""
+        return self.distance <= distance and self.uv <= uv
+
+
+@dataclass(frozen=True)
+class Original:
+    """A surface that parts are compared with, and points on it."""
+
+    surface: Surface
+    points: SurfacePoints
+    tree: Tree
+    seed: int
+
+    @staticmethod
+    def of(
+        triangles: Triangles, tree: Tree, samples: int, seed: int, counted: BoolArray | None = None
+    ) -> Original:
+        """`samples` points on the original; of those only the ones on `counted` faces (m,) bool.
+
+        Raises MeshError where no face has an area.
+        """
+        mesh = triangles.mesh()
+        surface = Surface(mesh, mesh.positions)
+        points = surface.sample(samples, np.random.default_rng([seed, 0]))
+        if counted is not None and counted[points.faces].any():
+            points = points[counted[points.faces]]
+        return Original(surface, points, tree, seed)
+
+    def errors(self, decoded: TexturedMesh) -> Errors:
+        """Errors of a mesh whose positions are in the normalized frame.
+
+        All are infinite where none of its faces has an area.
+        """
+        other = Surface(decoded, decoded.positions)
+        try:
+            points = other.sample(len(self.points), np.random.default_rng([self.seed, 1]))
+        except MeshError:
+            return Errors(np.inf, np.inf, np.inf, np.inf)
+        directions = [
+            Matches(self.points, other.closest(self.surface.outlook(self.points))),
+            Matches(self._closest(points), points),
+        ]
+        misses = [uv_errors(self.surface, other, each) for each in directions]
+        seen = [each for each in misses if len(each)]
+        return Errors(
+            distance=max(float(each.distances.mean()) for each in directions),
+            distance_p99=max(float(np.percentile(each.distances, 99)) for each in directions),
+            uv=max((float(each.mean()) for each in seen), default=0.0),
+            uv_median=max((float(np.median(each)) for each in seen), default=0.0),
+        )
+
+    def _closest(self, points: SurfacePoints) -> SurfacePoints:
+        """As `Surface.closest`, by the tree that is there."""
+        hits = self.tree.closest(points.positions)
+        faces = self.surface.facing(hits.faces, hits.positions - points.positions)
+        weights = self.surface.weights(faces, hits.positions)
+        return SurfacePoints(faces, weights, hits.positions)
+
+
+def mesh_of(part: MeshPart) -> TexturedMesh:
+    """A part before any placement as a mesh in the normalized frame, of nameless materials."""
+    return TexturedMesh(
+        positions=part.normalized(),
+        faces=part.faces,
+        uvs=part.asset_uvs(),
+        uv_faces=part.uv_faces,
+        face_materials=part.chart_materials[part.face_charts],
+        materials=(Material(),) * (int(part.chart_materials.max()) + 1),
+    )

@@ -1,0 +1,137 @@
+"""Candidates for a part: so many faces, so many bits, with what they cost and their errors."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+
+import numpy as np
+
+from nispcodec.core.arrays import BoolArray
+from nispcodec.core.mesh_part import MAX_GRID_BITS, MeshPart
+from nispcodec.simplify.closest import Tree
+from nispcodec.simplify.collapse import collapsed
+from nispcodec.simplify.config import LadderConfig
+from nispcodec.simplify.errors import Errors, Original, mesh_of
+from nispcodec.simplify.position_fit import fitted_positions
+from nispcodec.simplify.quantize import Grid, quantized
+from nispcodec.simplify.source import Source
+from nispcodec.simplify.triangles import Triangles
+from nispcodec.simplify.uv_fit import fitted_uvs
+
+Coded = Callable[[MeshPart], int]
+"""The bytes of a part."""
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """A part, what it costs and how far it is from the original."""
+
+    part: MeshPart
+    bits: int
+    uv_bits: int
+    errors: Errors
+    coded: Coded
+
+    @cached_property
+    def size(self) -> int:
+        """Bytes, counted when they are asked for: coding takes as long as all else."""
+        return self.coded(self.part)
+
+    @property
+    def faces(self) -> int:
+        """How many triangles."""
+        return len(self.part.faces)
+
+
+@dataclass(frozen=True)
+class Simplifier:
+    """Makes candidates of one source; what was fitted once is kept.
+
+    coded     the bytes of a part
+    original  what errors are measured against
+    """
+
+    source: Source
+    original: Original
+    coded: Coded
+    config: LadderConfig = LadderConfig()
+    seed: int = 0
+    _fitted: dict[int, Triangles] = field(default_factory=dict)
+
+    @staticmethod
+    def of(
+        triangles: Triangles,
+        coded: Coded,
+        config: LadderConfig = LadderConfig(),
+        seed: int = 0,
+        kept: BoolArray | None = None,
+    ) -> Simplifier:
+        """kept: (m,) bool, the faces that candidates hold and that are looked for; None: all.
+
+        The others, such as those hidden in bodies, may be found where they are, but are not missed.
+        Raises MeshError where no face has an area.
+        """
+        source = Source(triangles if kept is None else triangles.only(kept))
+        tree = source.tree if kept is None else Tree(triangles.corners)
+        original = Original.of(triangles, tree, config.samples, seed, kept)
+        return Simplifier(source, original, coded, config, seed)
+
+    def fitted(self, faces: int) -> Triangles:
+        """About so many triangles, positions fitted; the source itself for as many as it has."""
+        if faces not in self._fitted:
+            triangles = self.source.triangles
+            if faces < len(triangles):
+                fewer = collapsed(triangles, faces, self.config.collapse)
+                triangles = fitted_positions(self.source, fewer, self.config.fit, self.seed)
+            self._fitted[faces] = triangles
+        return self._fitted[faces]
+
+    def candidate(self, faces: int, bits: int, uv_bits: int) -> Candidate:
+        """About so many triangles, rounded, coded and measured."""
+        triangles = self.fitted(faces)
+        if faces < len(self.source.triangles):
+            # UVs are fitted to the places that rounding leaves.
+            places = Grid.of(triangles.positions, bits).rounded(triangles.positions)
+            placed = replace(triangles, positions=places)
+            uvs = fitted_uvs(self.source, placed, self.config.fit, self.seed).uvs
+            triangles = replace(triangles, uvs=uvs)
+        part = quantized(triangles, bits, uv_bits, self.config.crease_angle)
+        errors = self.original.errors(mesh_of(part))
+        return Candidate(part, bits, uv_bits, errors, self.coded)
+
+    def balanced(self, faces: int) -> Candidate:
+        """About so many faces, with bits whose rounding suits the error that is there before."""
+        before = self.original.errors(self.fitted(faces).mesh())
+        bits = self.bits_for(max(before.distance, self.config.tolerance))
+        uv_bits = self.uv_bits_for(max(before.uv_median, self.config.uv_tolerance))
+        return self.candidate(faces, bits, uv_bits)
+
+    def bits_for(self, distance: float) -> int:
+        """Bits a coordinate whose rounding is the best part of a mean distance."""
+        positions = self.source.triangles.positions
+        extent = float(np.ptp(positions, axis=0).max())
+        return _bits(extent, self.config.step * distance)
+
+    def uv_bits_for(self, uv: float) -> int:
+        """Bits a texture coordinate whose rounding is the best part of a typical UV error."""
+        uvs = self.source.triangles.uvs
+        extent = float(np.ptp(uvs, axis=0).max()) if len(uvs) else 0.0
+        return _bits(extent, self.config.uv_step * uv)
+
+
+def ladder(simplifier: Simplifier) -> list[Candidate]:
+    """Candidates from few faces to all, fewest first; the bits of each by the error it has."""
+    everything = len(simplifier.source.triangles)
+    config = simplifier.config
+    count = max(2, round(config.rungs * np.log2(max(everything / config.fewest, 2)) / 8))
+    wanted = np.geomspace(min(config.fewest, everything), everything, count)
+    return [simplifier.balanced(round(float(faces))) for faces in wanted]
+
+
+def _bits(extent: float, step: float) -> int:
+    """The fewest bits whose grid over an extent has at most this step."""
+    if extent <= step:
+        return 1
+    return int(np.clip(np.ceil(np.log2(extent / step + 1)), 1, MAX_GRID_BITS))

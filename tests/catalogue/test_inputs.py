@@ -1,0 +1,64 @@
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from nispcodec.catalogue.inputs import content, read_noted, unchanged
+from nispcodec.core.errors import MeshError
+from nispcodec.io.load import load_mesh
+from nispcodec.io.save import write_mesh
+from nispcodec.procedural.mug import sample_asset
+
+
+@pytest.fixture
+def mug(tmp_path: Path) -> Path:
+    path = tmp_path / "mug.obj"
+    write_mesh(sample_asset(), path)
+    return path
+
+
+def test_everything_that_an_asset_is_read_from_is_noted(mug: Path) -> None:
+    mesh, inputs, _ = read_noted(str(mug))
+    assert set(inputs) == {each.name for each in mug.parent.iterdir()}
+    assert mesh.warnings == load_mesh(mug).warnings
+    assert mesh.name == "mug"
+    assert unchanged(str(mug), inputs)
+
+
+@pytest.mark.parametrize("name", ["mug.obj", "mug.mtl", "mug_mug_color.png"])
+def test_a_change_anywhere_is_seen(mug: Path, name: str) -> None:
+    _, inputs, _ = read_noted(str(mug))
+    path = mug.with_name(name)
+    path.write_bytes(path.read_bytes() + b"\n")
+    assert not unchanged(str(mug), inputs)
+    path.unlink()
+    assert not unchanged(str(mug), inputs)
+
+
+def test_an_image_that_comes_later_is_a_change(mug: Path) -> None:
+    image = mug.with_name("mug_mug_color.png")
+    data = image.read_bytes()
+    image.unlink()
+    mesh, inputs, _ = read_noted(str(mug))
+    assert inputs["mug_mug_color.png"] is None
+    assert mesh.warnings
+    assert unchanged(str(mug), inputs)
+    image.write_bytes(data)
+    assert not unchanged(str(mug), inputs)
+
+
+def test_content_is_of_all_hashes() -> None:
+    some = {"a.obj": "1", "b.png": None}
+    assert content(some) == content(dict(reversed(some.items())))
+    assert content(some) != content({**some, "b.png": "2"})
+
+
+def test_unreadable_files_are_refused(tmp_path: Path) -> None:
+    with pytest.raises(MeshError, match="found none"):
+        read_noted(str(tmp_path / "gone.obj"))
+    with pytest.raises(MeshError, match="expected one of"):
+        read_noted(str(tmp_path / "gone.xyz"))
+    (tmp_path / "empty.obj").touch()
+    with pytest.raises(MeshError, match="found an empty file"):
+        read_noted(str(tmp_path / "empty.obj"))

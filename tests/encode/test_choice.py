@@ -1,0 +1,137 @@
+"""Which form an asset gets, with a form whose sizes are told and nothing fitted."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+
+from nispcodec import EncodeConfig
+from nispcodec.core.document import Document
+from nispcodec.core.errors import FitError, NispError
+from nispcodec.core.mesh_part import MeshPart
+from nispcodec.core.network import NetworkSpec
+from nispcodec.encode.choice import Choice, own_bytes
+from nispcodec.encode.config import FormConfig
+from nispcodec.encode.mesh_form import coded_bytes
+from nispcodec.simplify.errors import Errors
+from tests import tiny
+from tests.infer.parts import cube, part_of
+
+PART = part_of(cube())
+FIELD = tiny.document(sdf=tiny.random_network(NetworkSpec((24, 24), 1)))
+SIZE = own_bytes(FIELD)
+EXACT = Errors(0.0, 0.0, 0.0, 0.0)
+OFF = Errors(0.01, 0.02, 0.01, 0.005)
+
+
+class Told:
+    """In place of a MeshForm: what it says, and what it was asked."""
+
+    def __init__(self, estimate: float = 0.0, **found: Any) -> None:
+        self.bytes, self.found = estimate, found
+        self.asked: list[tuple[str, float, float]] = []
+
+    def estimate(self, distance: float, enough: float) -> float:
+        return self.bytes
+
+    def __getattr__(self, name: str) -> Any:
+        def answer(*limits: float) -> Any:
+            self.asked.append((name, *limits, *([0.0] * (2 - len(limits)))))  # type: ignore[arg-type]
+            return self.found.get(name)
+
+        return answer
+
+
+def candidate(errors: Errors = EXACT) -> Any:
+    return SimpleNamespace(part=PART, errors=errors, size=coded_bytes(PART))
+
+
+def choice(form: Told, **options: Any) -> Choice:
+    return Choice(form, EncodeConfig(**options), FormConfig())  # type: ignore[arg-type]
+
+
+def as_mesh(part: MeshPart) -> Document:
+    return replace(FIELD, field=None, meshes=(part,))
+
+
+@pytest.mark.parametrize(
+    ("estimate", "wanted"), [(100.0, False), (499.0, False), (501.0, True), (5000.0, True)]
+)
+def test_networks_are_fitted_unless_triangles_are_surely_smaller(
+    estimate: float, wanted: bool
+) -> None:
+    assert choice(Told(estimate)).wants_field(1000.0, 1e-3) is wanted
+
+
+@pytest.mark.parametrize(
+    "options",
+    [
+        {"geometry": "field"},
+        {"preset": "paper"},
+        {"prune": "smallest"},
+        {"target_size": 5000},
+        {"target_error": 1e-3},
+    ],
+)
+def test_who_asks_for_networks_gets_them(options: dict[str, Any]) -> None:
+    assert choice(Told(1.0), **options).wants_field(1000.0, 1e-3)
+
+
+def test_triangles_that_are_smaller_and_no_worse_are_taken() -> None:
+    chosen = choice(Told(10.0, best=candidate())).after_fit(FIELD, OFF)
+    assert chosen.document.field is None
+    assert chosen.document.meshes == (PART,)
+    assert (chosen.errors, chosen.other_bytes) == (EXACT, SIZE)
+
+
+def test_larger_triangles_are_not() -> None:
+    chosen = choice(Told(10.0 * SIZE, best=candidate())).after_fit(FIELD, OFF)
+    assert (chosen.document, chosen.errors) == (FIELD, OFF)
+
+
+def test_networks_asked_for_are_kept_whatever_triangles_take() -> None:
+    form = Told(1.0, best=candidate())
+    assert choice(form, geometry="field").after_fit(FIELD, OFF).document is FIELD
+    assert form.asked == []
+
+
+def test_to_a_size_the_nearer_form_is_taken() -> None:
+    for errors, mesh in ((EXACT, True), (replace(OFF, distance=1.0), False)):
+        form = Told(10.0, of_size=candidate(errors))
+        chosen = choice(form, target_size=SIZE).after_fit(FIELD, OFF)
+        assert bool(chosen.document.meshes) is mesh
+
+
+def test_to_an_error_the_smaller_form_is_taken() -> None:
+    form = Told(10.0, within=candidate())
+    assert choice(form, target_error=0.01).after_fit(FIELD, OFF).document.meshes == (PART,)
+    assert form.asked == [("within", 0.01, OFF.uv)]
+    assert choice(Told(10.0), target_error=0.01).after_fit(FIELD, OFF).document is FIELD
+
+
+def test_triangles_asked_for_are_as_near_as_the_preset_says() -> None:
+    form = Told(best=candidate())
+    chosen = choice(form, geometry="mesh", preset="best").triangles(as_mesh)
+    assert chosen.document.meshes == (PART,)
+    assert form.asked == [("best", FormConfig().most_distance["best"], math.inf)]
+
+
+def test_targets_that_triangles_miss_are_errors() -> None:
+    with pytest.raises(FitError, match="target error"):
+        choice(Told(), geometry="mesh", target_error=1e-6).triangles(as_mesh)
+    small = choice(Told(of_size=candidate()), geometry="mesh", target_size=20)
+    with pytest.raises(NispError, match="target size: expected at least"):
+        small.triangles(as_mesh)
+    wide = choice(Told(of_size=candidate()), geometry="mesh", target_size=20_000)
+    assert wide.triangles(as_mesh).document.meshes == (PART,)
+
+
+def test_images_do_not_count() -> None:
+    assert own_bytes(FIELD) < own_bytes(tiny.varied(FIELD, half_thickness=0.1))
+    assert own_bytes(FIELD) == own_bytes(
+        replace(FIELD, textures=(replace(FIELD.textures[0], data=bytes(999)),))
+    )

@@ -1,0 +1,68 @@
+from __future__ import annotations
+
+import math
+
+import pytest
+
+from nispcodec.core.asset import Material
+from nispcodec.core.document import Document, Frame
+from nispcodec.core.progress import silent
+from nispcodec.encode.config import FormConfig
+from nispcodec.encode.mesh_form import MeshForm, coded_bytes
+from nispcodec.geometry.analysis import analyze
+from tests.geometry.shapes import box_asset, soup, sphere
+
+CONFIG = FormConfig()
+
+
+@pytest.fixture(scope="module")
+def ball() -> MeshForm:
+    return MeshForm(analyze(soup(sphere(16))), 0, CONFIG, silent)
+
+
+@pytest.fixture(scope="module")
+def box() -> MeshForm:
+    return MeshForm(analyze(box_asset()), 0, CONFIG, silent)
+
+
+def test_a_nearer_surface_is_estimated_to_take_more_bytes(ball: MeshForm) -> None:
+    estimates = [ball.estimate(distance, 1e9) for distance in (7e-3, 4e-3, 1.5e-3)]
+    assert estimates == sorted(set(estimates))
+    assert ball.estimate(1e-12, 700.0) >= 700
+
+
+def test_the_estimate_is_near_what_is_found(ball: MeshForm) -> None:
+    found = ball.within(4e-3, math.inf)
+    assert found is not None
+    assert found.errors.distance <= 4e-3
+    assert 0.6 < ball.estimate(4e-3, 1e9) / found.size < 1.6
+
+
+def test_few_large_faces_are_kept_as_they_are(box: MeshForm) -> None:
+    best = box.best(1e-3, math.inf)
+    assert best.faces == 12
+    assert best.errors.distance <= CONFIG.negligible
+    assert best.size == coded_bytes(best.part) < 150
+
+
+def test_the_best_stays_within_both_limits(ball: MeshForm) -> None:
+    free = ball.best(1.0, math.inf)
+    near = ball.best(4e-3, math.inf)
+    small = ball.best(1.0, 400.0)
+    assert near.errors.distance <= 4e-3
+    assert small.size <= 400
+    assert min(near.size, free.size) >= small.size
+
+
+def test_a_candidate_of_a_size_is_the_nearest_found(ball: MeshForm) -> None:
+    sizes = [ball.of_size(most).size for most in (400, 600, 1200)]
+    distances = [ball.of_size(most).errors.distance for most in (400, 600, 1200)]
+    assert [size <= most for size, most in zip(sizes, (400, 600, 1200), strict=True)] == [True] * 3
+    assert distances == sorted(distances, reverse=True)
+
+
+def test_errors_of_a_document_are_those_of_what_it_decodes_to(ball: MeshForm) -> None:
+    best = ball.best(4e-3, math.inf)
+    frame = Frame((0.0, 0.0, 0.0), 1.0)
+    document = Document(frame, (Material(),), (), meshes=(best.part,))
+    assert ball.errors(document).distance == pytest.approx(best.errors.distance, rel=0.05)

@@ -1,0 +1,67 @@
+"""Errors of parts are those that `compare` gives."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from nispcodec.metrics.compare import Reference
+from nispcodec.simplify.collapse import collapsed
+from nispcodec.simplify.errors import Errors, Original, mesh_of
+from nispcodec.simplify.quantize import quantized
+from nispcodec.simplify.source import Source
+from tests.simplify.meshes import ball, bare_ball, sheet
+
+
+def test_the_same_as_compare() -> None:
+    source = Source(ball())
+    mesh = source.triangles.mesh()
+    decoded = mesh_of(quantized(collapsed(source.triangles, 200), 10, 10))
+    found = Original.of(source.triangles, source.tree, 8000, 0).errors(decoded)
+    reference = Reference.of(mesh, samples=8000, seed=0)
+    # Its normalized frame is that of the mesh, whose corners are not all at radius 1.
+    report = reference.compare(decoded)
+    geometry, uv = report["geometry"]["larger"], report["uv"]["larger"]
+    assert isinstance(geometry, dict)
+    assert isinstance(uv, dict)
+    assert found.distance == pytest.approx(geometry["mean"], rel=0.02)
+    assert found.distance_p99 == pytest.approx(geometry["p99"], rel=0.05)
+    assert found.uv == pytest.approx(uv["mean"], rel=0.1)
+    assert found.uv_median == pytest.approx(uv["median"], rel=0.05)
+
+
+def test_nothing_changed_is_no_error() -> None:
+    source = Source(sheet())
+    errors = Original.of(source.triangles, source.tree, 2000, 0).errors(source.triangles.mesh())
+    assert errors.within(1e-12, 1e-9)
+
+
+def test_without_uvs_there_is_no_uv_error() -> None:
+    source = Source(bare_ball())
+    errors = Original.of(source.triangles, source.tree, 2000, 0).errors(source.triangles.mesh())
+    assert errors.uv == errors.uv_median == 0
+
+
+def test_only_counted_faces_are_looked_for() -> None:
+    source = Source(ball())
+    above = source.triangles.corners[..., 2].mean(axis=1) > 0
+    half = source.triangles.only(above)
+    counted = Original.of(source.triangles, source.tree, 2000, 0, above)
+    assert counted.errors(half.mesh()).distance < 1e-9
+    assert Original.of(source.triangles, source.tree, 2000, 0).errors(half.mesh()).distance > 0.1
+
+
+def test_both_means_must_be_within() -> None:
+    errors = Errors(1e-3, 1.0, 2e-3, 1.0)
+    assert errors.within(1e-3, 2e-3)
+    assert not errors.within(0.9e-3, 2e-3)
+    assert not errors.within(1e-3, 1.9e-3)
+
+
+def test_nothing_with_an_area_is_infinitely_far() -> None:
+    source = Source(ball(6))
+    flat = replace(source.triangles, positions=np.zeros_like(source.triangles.positions))
+    errors = Original.of(source.triangles, source.tree, 1000, 0).errors(flat.mesh())
+    assert not errors.within(1e6, 1e6)

@@ -1,0 +1,53 @@
+"""Candidates from few faces to all."""
+
+from __future__ import annotations
+
+import pytest
+
+from nispcodec.simplify.ladder import Simplifier, ladder
+from nispcodec.simplify.triangles import Triangles
+from tests.geometry import shapes
+from tests.simplify.meshes import (
+    SMALL,
+    ball,
+    bare_ball,
+    coded,
+    half_dressed_ball,
+    sheet,
+    simplifier,
+    triangles_of,
+)
+
+
+@pytest.mark.parametrize("triangles", [ball(), bare_ball(), half_dressed_ball(), sheet()])
+def test_a_ladder_goes_from_few_faces_to_all(triangles: Triangles) -> None:
+    rungs = ladder(simplifier(triangles))
+    faces = [rung.faces for rung in rungs]
+    assert len(rungs) >= 3
+    assert faces == sorted(faces)
+    assert faces[0] < 60
+    assert faces[-1] == len(triangles)
+    sizes, distances = [rung.size for rung in rungs], [rung.errors.distance for rung in rungs]
+    assert sizes == sorted(sizes)
+    assert distances == sorted(distances, reverse=True)
+
+
+@pytest.mark.parametrize("count", [1, 2, 3])
+def test_a_mesh_of_few_faces_has_a_ladder(count: int) -> None:
+    few = triangles_of(shapes.soup(shapes.cube((-0.5, -0.5, -0.5), 1.0)[:count]))
+    assert [rung.faces for rung in ladder(simplifier(few))][-1] == count
+
+
+def test_faces_that_are_not_kept_are_not_missed_but_may_be_found() -> None:
+    given = ball()
+    above = given.corners[..., 2].mean(axis=1) > 0
+    half = Simplifier.of(given, coded, SMALL, kept=above).candidate(len(given), 14, 14)
+    assert half.faces == above.sum()
+    assert half.errors.distance < 1e-3
+
+
+def test_finer_errors_want_more_bits() -> None:
+    made = simplifier(ball(4))
+    assert made.bits_for(1e-4) == made.bits_for(1e-3) + 3
+    assert made.uv_bits_for(1e-3) < made.uv_bits_for(1e-4)
+    assert simplifier(bare_ball(4)).uv_bits_for(1e-3) == 1
