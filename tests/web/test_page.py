@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import re
 from base64 import b64decode
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -111,7 +110,7 @@ def documents() -> dict[str, Document]:
     return {
         "octahedron": octahedron,
         "sphere": tiny.document(tiny.sphere(width=64)),
-        "opening": replace(octahedron, charts=half),
+        "opening": tiny.varied(octahedron, charts=half),
     }
 
 

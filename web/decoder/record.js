@@ -92,7 +92,7 @@ export class Record {
   text(key, field, fallback) {
     return this.typed(key, field, fallback, (value) => {
       this.demand(typeof value === "string", field, "text", typeof value);
-      this.demand(!/[\0-\x1f\x7f]/.test(value), field, "no control characters", "some");
+      this.demand(isText(value), field, "no control characters", "some");
       return /** @type {string} */ (value);
     });
   }
@@ -141,6 +141,11 @@ export class Record {
   finish() {
     for (const key of this.fields.keys()) throw this.error("field", "a known field", key);
   }
+}
+
+/** Whether it is text without control characters. @param {unknown} value */
+export function isText(value) {
+  return typeof value === "string" && !/[\0-\x1f\x7f]/.test(value);
 }
 
 /** @param {unknown[]} a @param {unknown[]} b */

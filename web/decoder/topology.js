@@ -79,7 +79,7 @@ function checkSpec(record, name, spec) {
   record.demand(fourier === spec.levels > 0, "levels", "above 0 exactly for fourier", spec.levels);
   const none = spec.conditioning === "none";
   record.demand(none || name === "uv", "conditioning", "none but for uv", spec.conditioning);
-  const embedded = spec.conditioning === "embedding" || spec.conditioning === "chart_affine";
+  const embedded = spec.conditioning === "chart_affine";
   record.demand(embedded === spec.embedding > 0, "embedding", "above 0 exactly with one", spec.embedding);
   record.demand(spec.w0 > 0 && spec.w0 <= 1000, "w0", "above 0, at most 1000", spec.w0);
   record.demand(!((spec.mirror >> 3) & ~spec.mirror), "mirror", "a mirror where a side follows", spec.mirror);
@@ -99,8 +99,8 @@ export function inputCount(spec) {
 /** The tensors of a network, in file order. @param {Spec} spec @returns {Shape[]} */
 export function shapesOf(spec) {
   const shapes = [];
-  if (spec.embedding) shapes.push({ name: "embedding", rows: spec.charts, columns: spec.embedding });
   if (spec.conditioning === "chart_affine") {
+    shapes.push({ name: "embedding", rows: spec.charts, columns: spec.embedding });
     shapes.push({ name: "slopes", rows: spec.charts, columns: spec.outputs * coordinateCount(spec) });
     shapes.push({ name: "offsets", rows: spec.charts, columns: spec.outputs });
   }

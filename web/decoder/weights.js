@@ -1,5 +1,5 @@
 import { ByteReader, halfToNumber } from "./bytes.js";
-import { CODINGS, MAX_JOINED, MAX_SYMBOL, MAX_WEIGHTS, STEPS } from "./enumerations.js";
+import { CODINGS, MAX_SYMBOL, MAX_WEIGHTS, STEPS } from "./enumerations.js";
 import { NISPError } from "./errors.js";
 import { initialWeights } from "./initial_weights.js";
 import { readMatrix } from "./matrices.js";
@@ -94,12 +94,13 @@ function readRecord(reader, left, before, seed, place) {
 /** @param {ByteReader} reader @param {number} left */
 function readTag(reader, left) {
   const tag = reader.uint8();
-  const coding = CODINGS[(tag & 7) - 1];
-  const form = (tag >> 3) & 7;
-  const joined = tag >> 6;
-  if (!coding) throw reader.error("coding", `1 to ${CODINGS.length}`, tag & 7);
+  // A tag of 0 is a wide one: what does not fit in the bits of one.
+  const [number, form, joined] = tag ? [tag & 7, (tag >> 3) & 7, tag >> 6] : reader.bytes(3);
+  const coding = CODINGS[number - 1];
+  const fitting = number <= 7 && form <= 7 && joined <= 3;
+  if (!coding || form > STEPS.length || (!tag && fitting)) throw reader.error("coding", "a known coding and step, in the fewest bytes", number);
   const joinable = coding === "entropy" || coding === "delta_init";
-  const fits = joined <= MAX_JOINED && joined < left && (joinable || joined === 0);
+  const fits = joined < left && (joinable || joined === 0);
   if (!fits) throw reader.error("joined", "tensors that follow, in a coding that joins", joined);
   return { coding, form: form ? STEPS[form - 1] : null, joined };
 }

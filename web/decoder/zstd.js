@@ -99,7 +99,7 @@ class Frame {
     this.at = 5;
     sound(!(descriptor & 8), "a reserved bit");
     if (!single) this.at++;
-    sound(!(descriptor & 3), "a dictionary");
+    for (let i = [0, 1, 2, 4][descriptor & 3]; i > 0; i--) sound(!this.view.getUint8(this.at++), "a dictionary");
     sound(form || single, "no content size");
     const stated = [
       () => this.view.getUint8(this.at),

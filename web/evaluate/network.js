@@ -99,7 +99,7 @@ export class NetworkEvaluator {
   }
 
   /**
-   * Number of the largest of the first `among` outputs at each point.
+   * Number of the largest of the first `among` outputs at each point, 0 where one is NaN.
    * @param {Float32Array} points (3 n) @param {number} [among]
    * @returns {Int32Array} (n)
    */
@@ -108,8 +108,13 @@ export class NetworkEvaluator {
     this.blocks(points, null, (all, at, start, count) => {
       for (let p = 0; p < count; p++) {
         let best = 0;
-        for (let row = 1; row < among; row++) {
-          if (all[at + row * POINTS + p] > all[at + best * POINTS + p]) best = row;
+        for (let row = 0; row < among; row++) {
+          const logit = all[at + row * POINTS + p];
+          if (Number.isNaN(logit)) {
+            best = 0;
+            break;
+          }
+          if (logit > all[at + best * POINTS + p]) best = row;
         }
         found[start + p] = best;
       }

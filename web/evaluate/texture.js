@@ -29,6 +29,8 @@ function wrapped(index, size, wrap) {
  * @returns {number[]} RGBA in [0, 1], as stored
  */
 export function lookUp(image, u, v, use) {
+  if (!Number.isFinite(u)) u = 0;
+  if (!Number.isFinite(v)) v = 0;
   const { width, height, data } = image;
   const top = data instanceof Float32Array ? 1 : 255;
   const texel = (/** @type {number} */ x, /** @type {number} */ y) =>

@@ -9,7 +9,7 @@ const HEADER = 4;
  * row by row. The networks sdf, chart and uv have HEADER texels each, at the front:
  *
  *     0  first layer's texel; layers; charts; outputs
- *     1  mirror; fourier levels; conditioning (0 none, 1 scalar, 2 embedding, 3 chart_affine); coordinates
+ *     1  mirror; fourier levels; conditioning (0 none, 1 scalar, 2 chart_affine); coordinates
  *     2  activation (0 sine, 1 relu); output (0 identity, 1 tanh, 2 sigmoid); embedding's texel; affine's texel
  *     3  numbers of the embedding; inputs; unused; unused
  *
@@ -60,11 +60,11 @@ class Packer {
    * @param {(name: string) => Float32Array} tensor
    */
   network(header, spec, tensor) {
-    const conditioning = ["none", "scalar", "embedding", "chart_affine"].indexOf(spec.conditioning);
+    const conditioning = ["none", "scalar", "chart_affine"].indexOf(spec.conditioning);
     const embedding = this.at;
     for (const value of tensor("embedding")) this.put(value, 0, 0, 0);
     const affine = this.at;
-    if (conditioning === 3) this.affine(spec, tensor("slopes"), tensor("offsets"));
+    if (conditioning === 2) this.affine(spec, tensor("slopes"), tensor("offsets"));
     const layers = [...spec.hidden, spec.outputs].map((_, i) => this.weights(spec, i, tensor(`weight.${i}`), tensor(`bias.${i}`)));
     const first = this.at;
     for (const layer of layers) this.put(...layer, 0);

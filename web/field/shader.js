@@ -149,7 +149,7 @@ vec2 nispUv(vec3 p, int chart) {
   nispEnter(NISP_UV, p, chart);
   vec2 found = nispRows(nispHidden(NISP_UV), 0).xy;
   ivec4 form = ivec4(nispTexel(NISP_UV + 1));
-  if (form.z == 3) {
+  if (form.z == 2) {
     int at = int(nispTexel(NISP_UV + 2).w) + chart * (form.w + 1);
     for (int i = 0; i < form.w; i++) found += nispTexel(at + i).xy * nispCoordinate(p, form.x, i);
     found += nispTexel(at + form.w).xy;
