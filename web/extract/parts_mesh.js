@@ -1,6 +1,7 @@
 import { DisjointSets } from "../decoder/groups.js";
 import { sideAfter } from "../decoder/mesh/integers.js";
 import { cornerOrder, matrixOf, placer } from "../evaluate/placed.js";
+import { EXTRACTION } from "./config.js";
 
 /**
  * @typedef {import("../decoder/mesh/part.js").MeshPart} MeshPart
@@ -61,7 +62,9 @@ function splitPart(part) {
 }
 
 /** A number for the corners (3 m) at a vertex that no crease parts. @param {MeshPart} part */
-function smoothGroups({ faces, twin, creases, positions }) {
+function smoothGroups(part) {
+  const { faces, twin, positions } = part;
+  const creases = part.creases.some(Boolean) ? part.creases : sharpSides(part);
   const sets = new DisjointSets(faces.length);
   const border = new Int32Array(positions.length / 3).fill(-1);
   const joinAt = (/** @type {number} */ corner) => {
@@ -80,13 +83,28 @@ function smoothGroups({ faces, twin, creases, positions }) {
   return sets.labels().labels;
 }
 
+/** Sides where the surface turns sharply, for parts that say nothing about creases. @param {MeshPart} part */
+function sharpSides({ faces, twin, positions }) {
+  const normals = Array.from({ length: faces.length / 3 }, (_, face) => faceNormal(faces, positions, 3 * face));
+  return Uint8Array.from(twin, (other, side) => {
+    if (other < 0) return 0;
+    const [a, b] = [normals[Math.floor(side / 3)], normals[Math.floor(other / 3)]];
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2] < EXTRACTION.smoothCosine * Math.hypot(...a) * Math.hypot(...b) ? 1 : 0;
+  });
+}
+
+/** As long as twice the face's area. @param {Int32Array} faces @param {Int32Array} positions @param {number} corner the face's first */
+function faceNormal(faces, positions, corner) {
+  const at = (/** @type {number} */ i, /** @type {number} */ axis) => positions[3 * faces[corner + i] + axis];
+  const [u, v] = [1, 2].map((i) => [0, 1, 2].map((axis) => at(i, axis) - at(0, axis)));
+  return [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]];
+}
+
 /** Normals of groups of corners, weighted by area, of unit length; 0 where they cancel. @param {MeshPart} part @param {Int32Array} groups */
 function normalSums({ faces, positions }, groups) {
   const sums = new Float64Array(3 * faces.length);
-  const at = (/** @type {number} */ corner, /** @type {number} */ axis) => positions[3 * faces[corner] + axis];
   for (let corner = 0; corner < faces.length; corner += 3) {
-    const [u, v] = [1, 2].map((i) => [0, 1, 2].map((axis) => at(corner + i, axis) - at(corner, axis)));
-    const normal = [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]];
+    const normal = faceNormal(faces, positions, corner);
     for (let i = 0; i < 3; i++) normal.forEach((value, axis) => (sums[3 * groups[corner + i] + axis] += value));
   }
   for (let i = 0; i < sums.length; i += 3) {
