@@ -4,7 +4,7 @@ import { demand } from "./errors.js";
 import { unzstd } from "./zstd.js";
 
 /**
- * One row of the section table; its payload is unpacked where its code is known.
+ * One row of the section table, its payload unpacked where the section is known.
  * @typedef {{code: string, critical: boolean, packed: boolean, stored: number, content: Uint8Array}} Section
  */
 
@@ -29,8 +29,7 @@ export function readContainer(file, known) {
   const unpacked = rows.reduce((sum, row) => sum + (row.flags & PACKED ? row.decoded : 0), 0);
   demand(unpacked <= MAX_UNPACKED, "header", "unpacked length", `at most ${MAX_UNPACKED}`, unpacked);
   for (const row of rows) checkCode(row, known);
-  // What unknown sections hold must not be looked at.
-  return new Map(rows.map((row) => [row.code, toSection(row, known.includes(row.code))]));
+  return new Map(rows.map((row) => [row.code, toSection(row, known)]));
 }
 
 /** How many sections there are. @param {ByteReader} reader @param {Uint8Array} file */
@@ -90,9 +89,9 @@ function checkCode(row, known) {
   demand(row.code !== "META" || row.decoded <= MAX_METADATA, "META", "length", `at most ${MAX_METADATA}`, row.decoded);
 }
 
-/** @param {Row} row @param {boolean} known whether to unpack it @returns {Section} */
+/** What other sections hold is not looked at. @param {Row} row @param {string[]} known @returns {Section} */
 function toSection({ code, flags, payload, decoded }, known) {
   const packed = Boolean(flags & PACKED);
-  const content = packed && known ? unzstd(payload, decoded, code) : payload;
+  const content = packed && known.includes(code) ? unzstd(payload, decoded, code) : payload;
   return { code, critical: Boolean(flags & CRITICAL), packed, stored: payload.length, content };
 }

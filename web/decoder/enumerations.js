@@ -19,6 +19,7 @@ export const MEASURES = [
   "chart_accuracy",
   "uv_error_median",
   "uv_error_mean",
+  "other_form_bytes",
 ];
 export const PRESETS = ["balanced", "paper", "fast", "best"];
 export const CODINGS = ["dense", "coo", "csc", "csr", "dia", "entropy", "delta_init"];
@@ -41,3 +42,8 @@ export const MAX_INIT_SEED = 4294967295;
 export const MAX_WEIGHTS = 1048576;
 export const MAX_SYMBOL = 8388607;
 export const MAX_CELLS = 256;
+export const MAX_MESH_FACES = 262144;
+export const MESH_FACES_PER_BYTE = 64;
+export const MAX_MESH_PLACEMENTS = 4096;
+export const MAX_PLACED_FACES = 2097152;
+export const MAX_GRID_BITS = 20;

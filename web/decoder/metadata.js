@@ -13,7 +13,7 @@ import {
   WRAPS,
 } from "./enumerations.js";
 import { Float, readCanonical } from "./messagepack.js";
-import { Record } from "./record.js";
+import { isText, Record } from "./record.js";
 import { readSpec } from "./topology.js";
 
 /**
@@ -32,8 +32,8 @@ import { readSpec } from "./topology.js";
  * @typedef {{name: string, mime: string, length: number|undefined}} TextureEntry
  * @typedef {object} Metadata
  * @property {number[]} frame center and radius
- * @property {Map<string, Spec>} specs by network, in file order
- * @property {number} charts
+ * @property {Map<string, Spec>} specs by network, in file order; none without a field, whose charts are 0 then
+ * @property {number} charts of the field
  * @property {Int32Array} chartMaterials
  * @property {boolean[]} chartHasUv
  * @property {number[]} uvMap offset and scale
@@ -53,29 +53,41 @@ export function readMetadata(data) {
   const record = new Record("document", readCanonical(data, "META"));
   const frame = record.floats(1, "frame", 4);
   record.demand(frame[3] > 0, "frame", "a radius above 0", frame[3]);
-  const charts = record.integer(3, "charts", 1, MAX_CHARTS, 1);
-  const specs = readNetworks(record.map(2, "networks", false), charts);
   const textures = readTextures(record.array(8, "textures", true) ?? []);
   const materials = readMaterials(record, textures.length);
-  const metadata = {
-    frame,
-    specs,
-    charts,
-    chartMaterials: readChartMaterials(record, charts, materials.length),
-    chartHasUv: readChartHasUv(record, charts),
-    uvMap: record.floats(6, "uv_map", 4, [0, 0, 1, 1]),
-    materials,
-    textures,
-    halfThickness: record.float(9, "half_thickness", 0),
-    openings: record.bool(11, "openings", false),
-    info: readInfo(record.map(10, "info", true)),
-  };
+  const field = record.fields.has(2) ? readField(record, materials.length) : NO_FIELD;
+  const metadata = { frame, ...field, materials, textures, info: readInfo(record.map(10, "info", true)) };
   record.finish();
-  checkRelations(record, metadata);
   return metadata;
 }
 
-/** @param {Record} record @param {Metadata} metadata */
+const NO_FIELD = {
+  specs: /** @type {Map<string, Spec>} */ (new Map()),
+  charts: 0,
+  chartMaterials: new Int32Array(0),
+  chartHasUv: /** @type {boolean[]} */ ([]),
+  uvMap: [0, 0, 1, 1],
+  halfThickness: 0,
+  openings: false,
+};
+
+/** What is said of the field. @param {Record} record @param {number} materials @returns {typeof NO_FIELD} */
+function readField(record, materials) {
+  const charts = record.integer(3, "charts", 1, MAX_CHARTS, 1);
+  const field = {
+    specs: readNetworks(record.map(2, "networks", false), charts),
+    charts,
+    chartMaterials: readChartMaterials(record, charts, materials),
+    chartHasUv: readChartHasUv(record, charts),
+    uvMap: record.floats(6, "uv_map", 4, [0, 0, 1, 1]),
+    halfThickness: record.float(9, "half_thickness", 0),
+    openings: record.bool(11, "openings", false),
+  };
+  checkRelations(record, field);
+  return field;
+}
+
+/** @param {Record} record @param {typeof NO_FIELD} field */
 function checkRelations(record, { specs, charts, chartHasUv, openings }) {
   record.demand(specs.has("sdf"), "networks.sdf", "present", "absent");
   record.demand(specs.has("chart") === charts > 1, "chart network", "one exactly for two charts or more", charts);
@@ -203,32 +215,29 @@ function readInfo(record) {
   const info = {};
   for (const [key, value] of record.fields) {
     const name = typeof key === "number" ? MEASURES[key - 1] : key;
-    const known = typeof key === "number" ? name !== undefined : !MEASURES.includes(key);
+    const known = typeof key === "number" ? name !== undefined : isText(key) && !MEASURES.includes(key);
     record.demand(known, `key ${key}`, "a known number or another name", key);
-    record.printable("key", name);
     info[name] = readMeasure(record, key, name, value);
   }
   return info;
 }
 
-/**
- * Text keys have text, integers, floats or bools; presets integers or text, seeds integers, and other
- * numbered measures integers, which count millionths, or floats.
- * @param {Record} record @param {number|string} key @param {string} name @param {unknown} value
- */
+/** @param {Record} record @param {number|string} key @param {string} name @param {unknown} value */
 function readMeasure(record, key, name, value) {
-  if (key === 1) return readPreset(record, name, value);
-  if (typeof key === "string" && typeof value === "string") return record.printable(name, value);
-  if (typeof key === "string" && typeof value === "boolean") return value;
-  if (key !== 2 && value instanceof Float) return value.value;
-  record.demand(typeof value === "number", name, "a value of its type", typeof value);
-  return /** @type {number} */ (value) / (typeof key === "number" && key > 2 ? 1e6 : 1);
+  if (key === 1) {
+    const preset = typeof value === "number" ? PRESETS[value - 1] : value;
+    const known = isText(preset) && (typeof value === "number" || !PRESETS.includes(/** @type {string} */ (preset)));
+    record.demand(known, name, "a known number or another name", value);
+    return /** @type {string} */ (preset);
+  }
+  const number = value instanceof Float ? value.value : value;
+  if (typeof key === "string") record.demand(isText(number) || isPlain(number), name, "text, a number or a bool", typeof value);
+  else record.demand(typeof value === "number" || (key > 2 && value instanceof Float), name, key > 2 ? "a number" : "an integer", typeof value);
+  const counted = typeof key === "number" && key > 2 && typeof value === "number";
+  return counted ? value / 1e6 : /** @type {string|number|boolean} */ (number);
 }
 
-/** @param {Record} record @param {string} name @param {unknown} value */
-function readPreset(record, name, value) {
-  const preset = typeof value === "number" ? PRESETS[value - 1] : value;
-  const known = typeof preset === "string" && (typeof value === "number" || !PRESETS.includes(preset));
-  record.demand(known, name, "a known number or another name", value);
-  return record.printable(name, /** @type {string} */ (preset));
+/** @param {unknown} value */
+function isPlain(value) {
+  return typeof value === "number" || typeof value === "boolean";
 }

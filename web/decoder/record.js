@@ -92,14 +92,9 @@ export class Record {
   text(key, field, fallback) {
     return this.typed(key, field, fallback, (value) => {
       this.demand(typeof value === "string", field, "text", typeof value);
-      return this.printable(field, value);
+      this.demand(isText(value), field, "no control characters", "some");
+      return /** @type {string} */ (value);
     });
-  }
-
-  /** Text without control characters. @param {string} field @param {string} text */
-  printable(field, text) {
-    this.demand(!/[\0-\x1f\x7f]/.test(text), field, "no control characters", "some");
-    return text;
   }
 
   /**
@@ -146,6 +141,11 @@ export class Record {
   finish() {
     for (const key of this.fields.keys()) throw this.error("field", "a known field", key);
   }
+}
+
+/** Whether it is text without control characters. @param {unknown} value */
+export function isText(value) {
+  return typeof value === "string" && !/[\0-\x1f\x7f]/.test(value);
 }
 
 /** @param {unknown[]} a @param {unknown[]} b */

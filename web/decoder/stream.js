@@ -98,7 +98,7 @@ function readTokens(reader, runs) {
   const total = runs.reduce((sum, run) => sum + run.count, 0);
   const lanes = total === 0 ? 0 : total < SCALE ? 1 : total >> 9;
   const states = Float64Array.from({ length: lanes }, () => reader.uint16() * 65536 + reader.uint16());
-  if (!states.every((state) => state >= 65536)) throw reader.error("stream", "states of 2^16 or more", "others");
+  if (states.some((state) => state < 65536)) throw reader.error("first_state", "2^16 or more", "less");
   let lane = 0;
   const found = runs.map(({ count, cells, table }) => {
     const { slots, starts } = slotTable(table);

@@ -93,22 +93,16 @@ function readRecord(reader, left, before, seed, place) {
 
 /** @param {ByteReader} reader @param {number} left */
 function readTag(reader, left) {
-  const [coding, form, joined] = readTagNumbers(reader);
-  if (!CODINGS[coding - 1]) throw reader.error("coding", `1 to ${CODINGS.length}`, coding);
-  if (form > STEPS.length) throw reader.error("step", `0 to ${STEPS.length}`, form);
-  const joinable = ["entropy", "delta_init"].includes(CODINGS[coding - 1]);
+  const tag = reader.uint8();
+  // A tag of 0 is a wide one: what does not fit in the bits of one.
+  const [number, form, joined] = tag ? [tag & 7, (tag >> 3) & 7, tag >> 6] : reader.bytes(3);
+  const coding = CODINGS[number - 1];
+  const fitting = number <= 7 && form <= 7 && joined <= 3;
+  if (!coding || form > STEPS.length || (!tag && fitting)) throw reader.error("coding", "a known coding and step, in the fewest bytes", number);
+  const joinable = coding === "entropy" || coding === "delta_init";
   const fits = joined < left && (joinable || joined === 0);
   if (!fits) throw reader.error("joined", "tensors that follow, in a coding that joins", joined);
-  return { coding: CODINGS[coding - 1], form: form ? STEPS[form - 1] : null, joined };
-}
-
-/** Coding, form of the step, how many more tensors: in one byte, or where that cannot hold them in four. @param {ByteReader} reader */
-function readTagNumbers(reader) {
-  const tag = reader.uint8();
-  if (tag !== 0) return [tag & 7, (tag >> 3) & 7, tag >> 6];
-  const wide = [...reader.bytes(3)];
-  if (wide[0] <= 7 && wide[1] <= 7 && wide[2] <= 3) throw reader.error("tag", "the fewest bytes", "more");
-  return wide;
+  return { coding, form: form ? STEPS[form - 1] : null, joined };
 }
 
 /** @param {ByteReader} reader @param {string} form @param {number|null} before */

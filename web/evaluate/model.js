@@ -1,10 +1,12 @@
 import { Arithmetic } from "./arithmetic.js";
-import { NetworkEvaluator } from "./network.js";
+import { FieldQueries } from "./field.js";
+import { MeshQueries } from "./meshes.js";
 import { baseColor, lookUp } from "./texture.js";
 
 /**
- * A file's networks, ready to be asked. Points are Float32Array (3 n) of the normalized frame, or
- * what `normalized` makes of world points.
+ * A file's parts as one, ready to be asked: the field, its meshes, or both. Points are Float32Array
+ * (3 n) of the normalized frame, or what `normalized` makes of world points. Charts are numbered
+ * through: those of the field, then those of each copy of each mesh.
  */
 export class NISPModel {
   /**
@@ -15,14 +17,15 @@ export class NISPModel {
     this.document = document;
     this.metadata = document.metadata;
     this.arithmetic = arithmetic;
-    const network = (/** @type {string} */ name) => {
-      const spec = document.metadata.specs.get(name);
-      const tensors = document.tensors.get(name);
-      return spec && tensors ? new NetworkEvaluator(spec, tensors, arithmetic) : null;
-    };
-    this.sdfNetwork = /** @type {NetworkEvaluator} */ (network("sdf"));
-    this.chartNetwork = network("chart");
-    this.uvNetwork = network("uv");
+    this.field = document.metadata.specs.size ? new FieldQueries(document, arithmetic) : null;
+    /** @type {MeshQueries|null} */
+    this.meshQueries = null;
+  }
+
+  /** The mesh parts, made ready when they are first asked. */
+  get meshes() {
+    if (this.document.parts.length) this.meshQueries ??= new MeshQueries(this.document.parts);
+    return this.meshQueries;
   }
 
   /** World points (3 n) in the normalized frame. @param {ArrayLike<number>} points */
@@ -37,21 +40,38 @@ export class NISPModel {
     return Float64Array.from(points, (value, i) => value * frame[3] + frame[i % 3]);
   }
 
-  /** Signed distances (n), normalized frame. @param {Float32Array} points */
+  /** Signed distances (n), normalized frame: the least of all parts. @param {Float32Array} points */
   sdf(points) {
-    return this.sdfNetwork.evaluate(points);
+    const { field, meshes } = this;
+    const found = (field ?? /** @type {MeshQueries} */ (meshes)).sdf(points);
+    if (!field || !meshes) return found;
+    meshes.sdf(points).forEach((value, i) => (found[i] = Math.min(found[i], value)));
+    return found;
   }
 
   /** Signed distances and their gradients. @param {Float32Array} points */
   gradient(points) {
-    return this.sdfNetwork.gradient(points);
+    const { field, meshes } = this;
+    const found = (field ?? /** @type {MeshQueries} */ (meshes)).gradient(points);
+    if (!field || !meshes) return found;
+    const other = meshes.gradient(points);
+    other.values.forEach((value, i) => {
+      if (value >= found.values[i]) return;
+      found.values[i] = value;
+      found.gradients.set(other.gradients.subarray(3 * i, 3 * i + 3), 3 * i);
+    });
+    return found;
   }
 
-  /** @param {Float32Array} points @param {boolean} [openings] whether a point may be on an opening */
+  /** The charts (n) of the nearest parts. @param {Float32Array} points @param {boolean} [openings] whether a point may be on an opening */
   charts(points, openings = true) {
-    if (!this.chartNetwork) return new Int32Array(points.length / 3);
-    const { charts, openings: has } = this.metadata;
-    return this.chartNetwork.classify(points, has && !openings ? charts - 1 : charts);
+    const { field, meshes } = this;
+    if (!meshes) return /** @type {FieldQueries} */ (field).charts(points, openings);
+    const found = meshes.charts(points);
+    if (!field) return found;
+    const own = field.charts(points, openings);
+    const [one, other] = [field.sdf(points), meshes.sdf(points)];
+    return found.map((chart, i) => (Math.abs(other[i]) < Math.abs(one[i]) ? field.chartCount + chart : own[i]));
   }
 
   /**
@@ -59,13 +79,19 @@ export class NISPModel {
    * @param {Float32Array} points @param {Int32Array} [charts] (n) in place of those that are found
    */
   uv(points, charts = this.charts(points)) {
-    const { uvMap, chartHasUv } = this.metadata;
-    if (!this.uvNetwork) return new Float32Array((2 * points.length) / 3);
-    const found = this.uvNetwork.evaluate(points, charts);
-    for (let i = 0; i < found.length; i++) {
-      const scaled = found[i] * uvMap[2 + (i & 1)] + uvMap[i & 1];
-      found[i] = chartHasUv[charts[i >> 1]] ? scaled : 0;
-    }
+    const { field, meshes } = this;
+    if (!field || !meshes) return (field ?? /** @type {MeshQueries} */ (meshes)).uv(points, charts);
+    const found = new Float32Array(2 * charts.length);
+    const first = field.chartCount;
+    const ask = (/** @type {FieldQueries|MeshQueries} */ part, /** @type {number} */ start, /** @type {(chart: number) => boolean} */ has) => {
+      const own = Int32Array.from(charts.keys()).filter((i) => has(charts[i]));
+      const places = new Float32Array(3 * own.length);
+      own.forEach((i, at) => places.set(points.subarray(3 * i, 3 * i + 3), 3 * at));
+      const uvs = part.uv(places, own.map((i) => charts[i] - start));
+      own.forEach((i, at) => found.set(uvs.subarray(2 * at, 2 * at + 2), 2 * i));
+    };
+    ask(field, 0, (chart) => chart < first);
+    ask(meshes, first, (chart) => chart >= first);
     return found;
   }
 
@@ -84,8 +110,9 @@ export class NISPModel {
 
   /** @param {number} chart @param {number} u @param {number} v @param {(import("./texture.js").Pixels|null)[]} images */
   colorAt(chart, u, v, images) {
-    const material = this.metadata.materials[this.metadata.chartMaterials[chart]];
-    const use = this.metadata.chartHasUv[chart] ? material.maps.base_color : undefined;
+    const { chartMaterials, chartHasUv } = this.document;
+    const material = this.metadata.materials[chartMaterials[chart]];
+    const use = chartHasUv[chart] ? material.maps.base_color : undefined;
     const image = use ? images[use.texture] : null;
     return baseColor(material.baseColor, use && image ? lookUp(image, u, v, use) : null);
   }

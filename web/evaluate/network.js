@@ -99,7 +99,7 @@ export class NetworkEvaluator {
   }
 
   /**
-   * Number of the largest of the first `among` outputs at each point; 0 where one is NaN.
+   * Number of the largest of the first `among` outputs at each point, 0 where one is NaN.
    * @param {Float32Array} points (3 n) @param {number} [among]
    * @returns {Int32Array} (n)
    */
@@ -108,13 +108,15 @@ export class NetworkEvaluator {
     this.blocks(points, null, (all, at, start, count) => {
       for (let p = 0; p < count; p++) {
         let best = 0;
-        let known = true;
         for (let row = 0; row < among; row++) {
-          const value = all[at + row * POINTS + p];
-          if (Number.isNaN(value)) known = false;
-          if (value > all[at + best * POINTS + p]) best = row;
+          const logit = all[at + row * POINTS + p];
+          if (Number.isNaN(logit)) {
+            best = 0;
+            break;
+          }
+          if (logit > all[at + best * POINTS + p]) best = row;
         }
-        found[start + p] = known ? best : 0;
+        found[start + p] = best;
       }
     });
     return found;

@@ -21,11 +21,6 @@ function wrapped(index, size, wrap) {
   return Math.min(place, period - 1 - (wrap === "mirror" ? place : 0));
 }
 
-/** @param {number} value */
-function finite(value) {
-  return Number.isFinite(value) ? value : 0;
-}
-
 /**
  * The color of a map at a texture coordinate (section 8 of the specification).
  * @param {Pixels} image
@@ -34,12 +29,14 @@ function finite(value) {
  * @returns {number[]} RGBA in [0, 1], as stored
  */
 export function lookUp(image, u, v, use) {
+  if (!Number.isFinite(u)) u = 0;
+  if (!Number.isFinite(v)) v = 0;
   const { width, height, data } = image;
   const top = data instanceof Float32Array ? 1 : 255;
   const texel = (/** @type {number} */ x, /** @type {number} */ y) =>
     4 * (wrapped(y, height, use.wrapV) * width + wrapped(x, width, use.wrapU));
-  const x = finite(u) * width;
-  const y = (1 - finite(v)) * height;
+  const x = u * width;
+  const y = (1 - v) * height;
   if (use.filter === "nearest") {
     const at = texel(Math.floor(x), Math.floor(y));
     return [0, 1, 2, 3].map((channel) => data[at + channel] / top);

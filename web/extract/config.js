@@ -35,4 +35,6 @@ export const EXTRACTION = Object.freeze({
   bisections: 8,
   // Share of an edge that cuts keep from its ends.
   clearance: 0.02,
+  // Mesh parts: where none of its edges is a crease, one is where normals lean by more than 45 degrees.
+  smoothCosine: Math.SQRT1_2,
 });

@@ -1,129 +1,45 @@
-import { componentsOf, kept, withoutNoise } from "./components.js";
-import { EXTRACTION } from "./config.js";
-import { extractSurface } from "./isosurface.js";
-import { cutAlongSeams } from "./seams.js";
-import { vertexCharts } from "./vertex_charts.js";
+import { fieldMesh } from "./field_mesh.js";
+import { partsMesh } from "./parts_mesh.js";
 
 /**
- * A textured mesh in the normalized frame, a vertex for each position and chart that meet.
+ * A textured mesh in the normalized frame, a vertex for each position, normal and chart that meet.
  * @typedef {object} MeshData
  * @property {Float32Array} positions (3 n)
  * @property {Float32Array} normals (3 n) unit, outwards
  * @property {Float32Array} uvs (2 n) origin bottom-left; 0 on charts without
  * @property {Float32Array} charts (n)
  * @property {Uint32Array} indices (3 m)
- * @property {{start: number, count: number, material: number, textured: boolean}[]} groups of indices
+ * @property {{start: number, count: number, material: number, textured: boolean, fitted: boolean}[]} groups of
+ *     indices; fitted: of the field's surface, not triangles of the file
  * @property {number} dropped components that were noise
  */
 
 /**
- * The surface of a model as a textured mesh, cut along its seams.
+ * The surface of a model as a textured mesh: that of the field, cut along its seams, and the triangles
+ * of the file as they are.
  * @param {import("../evaluate/model.js").NISPModel} model
- * @param {number} resolution cells along an edge of the cube
+ * @param {number} resolution cells along an edge of the cube, for the field
  * @returns {MeshData}
  */
-export function extractMesh(model, resolution) {
-  const found = withoutNoise(model.sdfNetwork, extractSurface(model.sdfNetwork, resolution));
-  const cut = withoutOpenings(model, cutOf(model, found.surface));
-  return { ...dressed(model, cut), dropped: found.dropped };
+export function extractMesh({ field, document }, resolution) {
+  const own = field && fieldMesh(field, resolution);
+  const parts = document.parts.length ? partsMesh(document) : null;
+  return own && parts ? joined(own, parts) : /** @type {MeshData} */ (own ?? parts);
 }
 
-/** @typedef {import("./seams.js").CutSurface} CutSurface @typedef {import("../evaluate/model.js").NISPModel} NISPModel */
-
-/** @param {NISPModel} model @param {import("./isosurface.js").Surface} surface @returns {CutSurface} */
-function cutOf({ sdfNetwork, chartNetwork }, surface) {
-  if (!chartNetwork) return { surface, charts: new Int32Array(surface.faces.length / 3) };
-  return cutAlongSeams(sdfNetwork, chartNetwork, surface, vertexCharts(chartNetwork, surface));
-}
-
-/**
- * Without what closes openings, and islands in it: small pieces of another chart on its rim.
- * @param {NISPModel} model @param {CutSurface} cut @returns {CutSurface}
- */
-function withoutOpenings({ metadata }, { surface, charts }) {
-  if (!metadata.openings) return { surface, charts };
-  const opening = metadata.charts - 1;
-  const { positions, faces, cell } = surface;
-  const rim = new Set(faces.filter((_, i) => charts[Math.floor(i / 3)] === opening));
-  const open = Int32Array.from(charts.keys()).filter((face) => charts[face] !== opening);
-  const left = { positions, faces: facesOf(faces, open), cell };
-  const { labels, sizes } = componentsOf(left);
-  const touching = new Set(left.faces.filter((vertex) => rim.has(vertex)).map((vertex) => labels[vertex]));
-  const stays = (/** @type {number} */ vertex) => {
-    const label = labels[vertex];
-    return sizes[label] * cell ** 2 >= EXTRACTION.smallArea || !touching.has(label);
+/** @param {MeshData} a @param {MeshData} b @returns {MeshData} */
+function joined(a, b) {
+  const vertices = a.positions.length / 3;
+  const floats = (/** @type {"positions"|"normals"|"uvs"|"charts"} */ name) => {
+    const all = new Float32Array(a[name].length + b[name].length);
+    all.set(a[name]);
+    all.set(b[name], a[name].length);
+    return all;
   };
-  const staying = open.filter((face) => stays(faces[3 * face]));
-  return { surface: kept({ positions, faces: facesOf(faces, staying), cell }, () => true), charts: staying.map((face) => charts[face]) };
-}
-
-/** @param {Int32Array} faces @param {Int32Array} chosen */
-function facesOf(faces, chosen) {
-  return Int32Array.from({ length: 3 * chosen.length }, (_, i) => faces[3 * chosen[Math.floor(i / 3)] + (i % 3)]);
-}
-
-/** @param {NISPModel} model @param {CutSurface} cut */
-function dressed(model, { surface, charts }) {
-  const { metadata } = model;
-  const order = Array.from(charts.keys()).sort((a, b) => groupOf(metadata, charts[a]) - groupOf(metadata, charts[b]));
-  const { indices, vertices, owners } = splitVertices(surface.faces, charts, order, metadata.charts);
-  const positions = new Float32Array(3 * vertices.length);
-  vertices.forEach((vertex, i) => positions.set(surface.positions.subarray(3 * vertex, 3 * vertex + 3), 3 * i));
-  const uvs = model.uv(positions, Int32Array.from(owners));
-  const groups = groupsOf(metadata, order.map((face) => charts[face]));
-  return { positions, normals: normalsAt(model, positions), uvs, charts: Float32Array.from(owners), indices, groups };
-}
-
-/** Material and whether it has texture coordinates, as one number. @param {import("../decoder/metadata.js").Metadata} metadata @param {number} chart */
-function groupOf({ chartMaterials, chartHasUv }, chart) {
-  return 2 * chartMaterials[chart] + (chartHasUv[chart] ? 1 : 0);
-}
-
-/** @param {Int32Array} faces @param {Int32Array} charts @param {number[]} order @param {number} count */
-function splitVertices(faces, charts, order, count) {
-  /** @type {Map<number, number>} */
-  const numbers = new Map();
-  /** @type {number[]} */
-  const vertices = [];
-  /** @type {number[]} */
-  const owners = [];
-  const indices = new Uint32Array(3 * order.length);
-  order.forEach((face, i) => {
-    for (let k = 0; k < 3; k++) {
-      const vertex = faces[3 * face + k];
-      const key = vertex * count + charts[face];
-      let number = numbers.get(key);
-      if (number === undefined) {
-        number = vertices.push(vertex) - 1;
-        owners.push(charts[face]);
-        numbers.set(key, number);
-      }
-      indices[3 * i + k] = number;
-    }
-  });
-  return { indices, vertices, owners };
-}
-
-/** @param {import("../decoder/metadata.js").Metadata} metadata @param {number[]} charts of the faces, in order */
-function groupsOf(metadata, charts) {
-  /** @type {MeshData["groups"]} */
-  const groups = [];
-  let before = -1;
-  charts.forEach((chart, face) => {
-    const group = groupOf(metadata, chart);
-    if (group !== before) groups.push({ start: 3 * face, count: 0, material: group >> 1, textured: Boolean(group & 1) });
-    groups[groups.length - 1].count += 3;
-    before = group;
-  });
-  return groups;
-}
-
-/** Unit normals (3 n) by the gradient. @param {NISPModel} model @param {Float32Array} positions */
-function normalsAt(model, positions) {
-  const { gradients } = model.gradient(positions);
-  for (let i = 0; i < gradients.length; i += 3) {
-    const length = Math.hypot(gradients[i], gradients[i + 1], gradients[i + 2]) || 1;
-    for (let k = 0; k < 3; k++) gradients[i + k] /= length;
-  }
-  return gradients;
+  const indices = new Uint32Array(a.indices.length + b.indices.length);
+  indices.set(a.indices);
+  b.indices.forEach((vertex, i) => (indices[a.indices.length + i] = vertices + vertex));
+  const groups = [...a.groups, ...b.groups.map((group) => ({ ...group, start: a.indices.length + group.start }))];
+  const arrays = { positions: floats("positions"), normals: floats("normals"), uvs: floats("uvs"), charts: floats("charts") };
+  return { ...arrays, indices, groups, dropped: a.dropped };
 }

@@ -74,8 +74,9 @@ export class NISPFieldMaterial extends ShaderMaterial {
   /** @param {NISPModel} model @param {TextureSet} textures */
   constructor(model, textures) {
     const { metadata } = model;
+    if (!model.field) throw new Error("networks: expected some, found meshes alone: NISPLoader shows them");
     const packed = packField(model.document);
-    const grid = occupancyOf(model.sdfNetwork);
+    const grid = occupancyOf(model.field.sdfNetwork);
     const maps = mapsOf(metadata.materials, textures);
     super({
       name: "NISPFieldMaterial",

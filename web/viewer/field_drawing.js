@@ -5,14 +5,14 @@ import { occupancyOf } from "../field/occupancy.js";
 export class FieldDrawing {
   /**
    * @param {WebGL2RenderingContext} gl
-   * @param {import("../evaluate/model.js").NISPModel} model
+   * @param {import("../evaluate/model.js").NISPModel} model one with a field
    */
   constructor(gl, model) {
     this.gl = gl;
     this.metadata = model.metadata;
     const packed = packField(model.document);
     this.groups = packed.groups;
-    this.occupancy = occupancyOf(model.sdfNetwork);
+    this.occupancy = occupancyOf(/** @type {import("../evaluate/field.js").FieldQueries} */ (model.field).sdfNetwork);
     this.chartTable = packed.at;
     this.data = this.dataTexture(packed.texels, packed.height);
     this.grid = this.gridTexture();

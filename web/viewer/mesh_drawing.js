@@ -14,7 +14,6 @@ export class MeshDrawing {
     });
     this.triangles = this.indices(mesh.indices);
     this.sides = this.indices(sidesOf(mesh.indices));
-    this.count = mesh.indices.length;
     gl.bindVertexArray(null);
   }
 
@@ -30,15 +29,16 @@ export class MeshDrawing {
   /**
    * @param {import("./programs.js").Program} program mesh, in use
    * @param {import("./materials.js").MaterialSet} materials
+   * @param {boolean} partsAlone without the field's surface
    */
-  draw(program, materials) {
+  draw(program, materials, partsAlone) {
     const { gl } = this;
     gl.bindVertexArray(this.array);
     gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, this.triangles);
     const see_through = (/** @type {{material: number}} */ group) => materials.materials[group.material].alphaMode === "blend";
     for (const last of [false, true]) {
       gl.depthMask(!last);
-      for (const group of this.groups.filter((each) => see_through(each) === last)) {
+      for (const group of this.shown(partsAlone).filter((each) => see_through(each) === last)) {
         materials.apply(program, group.material, group.textured, 0);
         gl.drawElements(gl.TRIANGLES, group.count, gl.UNSIGNED_INT, 4 * group.start);
       }
@@ -47,11 +47,17 @@ export class MeshDrawing {
     gl.bindVertexArray(null);
   }
 
-  drawSides() {
+  /** @param {boolean} partsAlone */
+  shown(partsAlone) {
+    return this.groups.filter(({ fitted }) => !partsAlone || !fitted);
+  }
+
+  /** @param {boolean} partsAlone */
+  drawSides(partsAlone) {
     const { gl } = this;
     gl.bindVertexArray(this.array);
     gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, this.sides);
-    gl.drawElements(gl.LINES, 2 * this.count, gl.UNSIGNED_INT, 0);
+    for (const { start, count } of this.shown(partsAlone)) gl.drawElements(gl.LINES, 2 * count, gl.UNSIGNED_INT, 8 * start);
     gl.bindVertexArray(null);
   }
 }

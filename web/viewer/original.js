@@ -17,7 +17,7 @@ export function readOriginal({ materials, images, mesh }) {
       uvs: floats(mesh.uvs),
       charts: floats(mesh.charts),
       indices: new Uint32Array(fromBase64(mesh.indices).buffer),
-      groups: mesh.groups,
+      groups: mesh.groups.map((/** @type {any} */ group) => ({ ...group, fitted: false })),
       dropped: 0,
     },
   };

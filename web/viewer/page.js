@@ -11,6 +11,9 @@ import { CHANNELS } from "./renderer.js";
 /** Layers wider than this make shaders that take too long: such a file is seen as a mesh alone. */
 const WIDEST_FIELD = 256;
 
+/** Mesh parts that statistics list. */
+const MOST_PARTS = 12;
+
 /** The page that `nisp view` shows. */
 export class ViewerPage {
   /** @param {() => Worker} makeWorker one that runs serveExtraction */
@@ -98,10 +101,12 @@ export class ViewerPage {
     const parseTime = performance.now() - started;
     this.model = new NISPModel(parsed);
     this.pane.renderer.setMaterials(parsed.metadata.materials, await decodeImages(parsed.images));
-    const wide = Math.max(...[...parsed.metadata.specs.values()].flatMap((spec) => spec.hidden)) > WIDEST_FIELD;
-    input("field").disabled = wide;
-    if (wide) input("field").checked = false;
-    else this.pane.renderer.setField(this.model);
+    const widths = [...parsed.metadata.specs.values()].flatMap((spec) => spec.hidden);
+    const traceable = widths.length > 0 && Math.max(...widths) <= WIDEST_FIELD;
+    input("field").disabled = !traceable;
+    input("resolution").disabled = !widths.length;
+    if (traceable) this.pane.renderer.setField(this.model);
+    else input("field").checked = false;
     document.title = element("name").textContent = name;
     showRows("bytes", byteRows(parsed, file.length));
     showRows("facts", factRows(parsed, parseTime));
@@ -194,14 +199,25 @@ function byteRows(parsed, length) {
 }
 
 /** @param {import("../decoder/document.js").Document} parsed @param {number} milliseconds @returns {[string, string][]} */
-function factRows({ metadata, tensors }, milliseconds) {
+function factRows({ metadata, tensors, parts, chartMaterials }, milliseconds) {
   const weights = [...tensors.values()].flatMap((each) => [...each.values()]).reduce((sum, { values }) => sum + values.length, 0);
   return [
-    ["charts", String(metadata.charts)],
+    ["charts", String(chartMaterials.length)],
     ["materials", String(metadata.materials.length)],
     ["weights", weights.toLocaleString("en")],
+    ...partRows(parts),
     ["parsed in", `${milliseconds.toFixed(1)} ms`],
   ];
+}
+
+/** Triangles of the file, part by part. @param {import("../decoder/mesh/part.js").MeshPart[]} parts @returns {[string, string][]} */
+function partRows(parts) {
+  /** @type {[string, string][]} */
+  const rows = parts.slice(0, MOST_PARTS).map(({ faceCharts, placements }, i) => {
+    const copies = placements.length > 1 ? `, ${placements.length} copies` : "";
+    return [`mesh part ${i + 1}`, `${faceCharts.length.toLocaleString("en")} triangles${copies}`];
+  });
+  return parts.length > MOST_PARTS ? [...rows, ["more mesh parts", String(parts.length - MOST_PARTS)]] : rows;
 }
 
 /** @param {import("../extract/mesh.js").MeshData} mesh @param {number} milliseconds @returns {[string, string][]} */

@@ -46,6 +46,7 @@ uniform vec2 half_size;
 uniform vec2 jitter;
 uniform float width;
 uniform vec2 owner;
+uniform mat4 projection;
 uniform sampler2D hits, normals, uvs, slopes;
 out vec4 color;
 ${SHADE_GLSL}
@@ -56,6 +57,8 @@ void main() {
   vec4 first = texelFetch(uvs, at, 0), second = texelFetch(slopes, at, 0);
   vec3 towards = normalize(axes * vec3((place + jitter) * half_size, -1.0));
   vec3 slope_u = vec3(first.zw, second.x), slope_v = second.yzw;
+  vec4 clip = projection * vec4(eye + hit.x * towards, 1.0);
+  gl_FragDepth = 0.5 + 0.5 * clip.z / clip.w;
   float slant = max(abs(dot(normal.xyz, towards)), 0.1);
   float area = length(cross(slope_u, slope_v)) * width * width * hit.x * hit.x / slant;
   color = shaded(towards, normal.xyz, first.xy, area, slope_u, slope_v, int(hit.y));

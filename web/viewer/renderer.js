@@ -74,8 +74,12 @@ export class Renderer {
     gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
     gl.enable(gl.BLEND);
     gl.blendFunc(gl.ONE, gl.ONE_MINUS_SRC_ALPHA);
-    if (look.field && this.field) this.shadeField(camera, look, width, height, jitter);
-    else if (this.mesh) this.drawMesh(camera, look, width, height, jitter);
+    gl.enable(gl.DEPTH_TEST);
+    const traced = look.field && this.field !== null;
+    if (traced) this.shadeField(camera, look, width, height, jitter);
+    // In the field's view, what the file holds as triangles stands beside it.
+    if (this.mesh) this.drawMesh(camera, look, width, height, jitter, traced);
+    gl.disable(gl.DEPTH_TEST);
     this.accumulate(width, height);
     return true;
   }
@@ -115,6 +119,7 @@ export class Renderer {
     const program = this.programs.shadeField();
     this.rays(program, camera, width, height, jitter);
     this.light(program, camera, look);
+    gl.uniformMatrix4fv(program.at("projection"), false, camera.projection(width, height, jitter));
     gl.uniform1f(program.at("width"), (2 * camera.halfSize(width, height)[0]) / width);
     ["hits", "normals", "uvs", "slopes"].forEach((name, i) => {
       gl.activeTexture(gl.TEXTURE0 + i);
@@ -134,11 +139,13 @@ export class Renderer {
     this.gl.uniform1i(program.at("channel"), CHANNELS.indexOf(look.channel));
   }
 
-  /** @param {Camera} camera @param {Look} look @param {number} width @param {number} height @param {number[]} jitter */
-  drawMesh(camera, look, width, height, jitter) {
+  /**
+   * @param {Camera} camera @param {Look} look @param {number} width @param {number} height @param {number[]} jitter
+   * @param {boolean} partsAlone without the field's surface
+   */
+  drawMesh(camera, look, width, height, jitter, partsAlone) {
     const { gl } = this;
     const mesh = /** @type {MeshDrawing} */ (this.mesh);
-    gl.enable(gl.DEPTH_TEST);
     gl.enable(gl.POLYGON_OFFSET_FILL);
     gl.polygonOffset(look.wireframe ? 1 : 0, look.wireframe ? 1 : 0);
     const projection = camera.projection(width, height, jitter);
@@ -146,12 +153,11 @@ export class Renderer {
     gl.uniformMatrix4fv(program.at("projection"), false, projection);
     gl.uniform3fv(program.at("eye"), camera.eye());
     this.light(program, camera, look);
-    mesh.draw(program, /** @type {MaterialSet} */ (this.materials));
+    mesh.draw(program, /** @type {MaterialSet} */ (this.materials), partsAlone);
     if (look.wireframe) {
       gl.uniformMatrix4fv(this.programs.lines().at("projection"), false, projection);
-      mesh.drawSides();
+      mesh.drawSides(partsAlone);
     }
-    gl.disable(gl.DEPTH_TEST);
   }
 
   /** @param {number} width @param {number} height */

@@ -1,0 +1,174 @@
+import { DisjointSets } from "../decoder/groups.js";
+import { sideAfter } from "../decoder/mesh/integers.js";
+import { cornerOrder, matrixOf, placer } from "../evaluate/placed.js";
+import { EXTRACTION } from "./config.js";
+
+/**
+ * @typedef {import("../decoder/mesh/part.js").MeshPart} MeshPart
+ * @typedef {import("../decoder/mesh/placements.js").Placement} Placement
+ * @typedef {object} SplitPart a part with one vertex for each position, normal and texture coordinate that meet
+ * @property {Int32Array} vertices (3 m) of the corners
+ * @property {number[]} sources a corner of each vertex
+ * @property {Float64Array} normals (3 v) unit, in the part's frame
+ */
+
+/**
+ * All copies of all mesh parts as one mesh: triangles, seams and creases as the file has them.
+ * @param {import("../decoder/document.js").Document} document
+ * @returns {import("./mesh.js").MeshData}
+ */
+export function partsMesh(document) {
+  const split = document.parts.map(splitPart);
+  const copies = document.parts.map((part) => part.placements.length);
+  const count = split.reduce((sum, { sources }, i) => sum + sources.length * copies[i], 0);
+  const mesh = { positions: new Float32Array(3 * count), normals: new Float32Array(3 * count), uvs: new Float32Array(2 * count), charts: new Float32Array(count) };
+  const grouped = new GroupedFaces(document);
+  let [vertex, chart] = [0, document.metadata.charts];
+  document.parts.forEach((part, i) => {
+    for (const placement of part.placements) {
+      putVertices(part, placement, split[i], mesh, vertex, chart);
+      grouped.add(part, placement, split[i].vertices, vertex, chart);
+      vertex += split[i].sources.length;
+      chart += part.chartHasUv.length;
+    }
+  });
+  return { ...mesh, ...grouped.finish(), dropped: 0 };
+}
+
+/** @param {MeshPart} part @returns {SplitPart} */
+function splitPart(part) {
+  const { faces, uvFaces, faceCharts } = part;
+  const smooth = smoothGroups(part);
+  const sums = normalSums(part, smooth);
+  /** @type {Map<number, number>} */
+  const numbers = new Map();
+  /** @type {number[]} */
+  const sources = [];
+  const most = 2 * faces.length;
+  const vertices = faces.map((_, corner) => {
+    // A texture coordinate is of one chart.
+    const look = uvFaces[corner] >= 0 ? uvFaces[corner] : faces.length + faceCharts[Math.floor(corner / 3)];
+    const key = smooth[corner] * most + look;
+    let number = numbers.get(key);
+    if (number === undefined) {
+      number = sources.push(corner) - 1;
+      numbers.set(key, number);
+    }
+    return number;
+  });
+  const normals = new Float64Array(3 * sources.length);
+  sources.forEach((corner, i) => normals.set(sums.subarray(3 * smooth[corner], 3 * smooth[corner] + 3), 3 * i));
+  return { vertices, sources, normals };
+}
+
+/** A number for the corners (3 m) at a vertex that no crease parts. @param {MeshPart} part */
+function smoothGroups(part) {
+  const { faces, twin, positions } = part;
+  const creases = part.creases.some(Boolean) ? part.creases : sharpSides(part);
+  const sets = new DisjointSets(faces.length);
+  const border = new Int32Array(positions.length / 3).fill(-1);
+  const joinAt = (/** @type {number} */ corner) => {
+    const vertex = faces[corner];
+    if (border[vertex] < 0) border[vertex] = corner;
+    sets.join(border[vertex], corner);
+  };
+  twin.forEach((other, side) => {
+    if (creases[side]) return;
+    if (other >= 0) sets.join(side, sideAfter(other));
+    else {
+      joinAt(side);
+      joinAt(sideAfter(side));
+    }
+  });
+  return sets.labels().labels;
+}
+
+/** Sides where the surface turns sharply, for parts that say nothing about creases. @param {MeshPart} part */
+function sharpSides({ faces, twin, positions }) {
+  const normals = Array.from({ length: faces.length / 3 }, (_, face) => faceNormal(faces, positions, 3 * face));
+  return Uint8Array.from(twin, (other, side) => {
+    if (other < 0) return 0;
+    const [a, b] = [normals[Math.floor(side / 3)], normals[Math.floor(other / 3)]];
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2] < EXTRACTION.smoothCosine * Math.hypot(...a) * Math.hypot(...b) ? 1 : 0;
+  });
+}
+
+/** As long as twice the face's area. @param {Int32Array} faces @param {Int32Array} positions @param {number} corner the face's first */
+function faceNormal(faces, positions, corner) {
+  const at = (/** @type {number} */ i, /** @type {number} */ axis) => positions[3 * faces[corner + i] + axis];
+  const [u, v] = [1, 2].map((i) => [0, 1, 2].map((axis) => at(i, axis) - at(0, axis)));
+  return [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]];
+}
+
+/** Normals of groups of corners, weighted by area, of unit length; 0 where they cancel. @param {MeshPart} part @param {Int32Array} groups */
+function normalSums({ faces, positions }, groups) {
+  const sums = new Float64Array(3 * faces.length);
+  for (let corner = 0; corner < faces.length; corner += 3) {
+    const normal = faceNormal(faces, positions, corner);
+    for (let i = 0; i < 3; i++) normal.forEach((value, axis) => (sums[3 * groups[corner + i] + axis] += value));
+  }
+  for (let i = 0; i < sums.length; i += 3) {
+    const length = Math.hypot(sums[i], sums[i + 1], sums[i + 2]) || 1;
+    for (let axis = 0; axis < 3; axis++) sums[i + axis] /= length;
+  }
+  return sums;
+}
+
+/**
+ * The vertices of one copy, from `first` on.
+ * @param {MeshPart} part @param {Placement} placement @param {SplitPart} split
+ * @param {{positions: Float32Array, normals: Float32Array, uvs: Float32Array, charts: Float32Array}} mesh
+ * @param {number} first @param {number} chart the copy's first
+ */
+function putVertices(part, placement, { sources, normals }, mesh, first, chart) {
+  const { positions, faces, uvs, uvFaces, uvStep, uvOrigin, faceCharts } = part;
+  const put = placer(part, placement);
+  const turn = matrixOf(placement).map((value) => value / placement.scale);
+  sources.forEach((corner, i) => {
+    const at = first + i;
+    const place = 3 * faces[corner];
+    put(positions[place], positions[place + 1], positions[place + 2], mesh.positions, 3 * at);
+    for (let row = 0; row < 3; row++) {
+      mesh.normals[3 * at + row] = turn[3 * row] * normals[3 * i] + turn[3 * row + 1] * normals[3 * i + 1] + turn[3 * row + 2] * normals[3 * i + 2];
+    }
+    const node = uvFaces[corner];
+    for (let axis = 0; axis < 2 && node >= 0; axis++) {
+      const value = uvs[2 * node + axis] * uvStep[axis] + uvOrigin[axis];
+      mesh.uvs[2 * at + axis] = value * placement.uvScale[axis] + placement.uvOffset[axis];
+    }
+    mesh.charts[at] = chart + faceCharts[Math.floor(corner / 3)];
+  });
+}
+
+/** Faces by material, and whether they have texture coordinates. */
+class GroupedFaces {
+  /** @param {import("../decoder/document.js").Document} document */
+  constructor({ chartMaterials, chartHasUv }) {
+    this.keys = chartMaterials.map((material, chart) => 2 * material + (chartHasUv[chart] ? 1 : 0));
+    /** @type {Map<number, number[]>} */
+    this.corners = new Map();
+  }
+
+  /** @param {MeshPart} part @param {Placement} placement @param {Int32Array} vertices @param {number} first @param {number} chart */
+  add(part, placement, vertices, first, chart) {
+    const order = cornerOrder(placement.mirrored);
+    part.faceCharts.forEach((own, face) => {
+      const key = this.keys[chart + own];
+      let list = this.corners.get(key);
+      if (!list) this.corners.set(key, (list = []));
+      for (const corner of order) list.push(first + vertices[3 * face + corner]);
+    });
+  }
+
+  finish() {
+    const lists = [...this.corners].sort(([a], [b]) => a - b);
+    const indices = new Uint32Array(lists.reduce((sum, [, list]) => sum + list.length, 0));
+    let start = 0;
+    const groups = lists.map(([key, list]) => {
+      indices.set(list, start);
+      start += list.length;
+      return { start: start - list.length, count: list.length, material: key >> 1, textured: Boolean(key & 1), fitted: false };
+    });
+    return { indices, groups };
+  }
+}
