@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from nispcodec.core.arrays import Int32Array
+from nispcodec.core.arrays import BoolArray, Int32Array
 from nispcodec.core.asset import TexturedMesh
 from nispcodec.core.mesh_part import MeshPart, Placement
 from nispcodec.simplify.quantize import Grid, on_grids
@@ -46,15 +46,21 @@ class Group:
 
 @dataclass(frozen=True)
 class Copies:
-    """Triangles without the bodies that are copies of others, and groups of them in order."""
+    """Triangles without the bodies that are copies of others, and groups of them in order.
+
+    covered (m,) bool: the faces of the given triangles that are held, or that a copy has
+    """
 
     triangles: Triangles
     groups: tuple[Group, ...]
+    covered: BoolArray
 
     @staticmethod
-    def none(triangles: Triangles) -> Copies:
-        """Where every body stands for itself."""
-        return Copies(triangles, (Group(range(int(triangles.patches.max()) + 1)),))
+    def none(triangles: Triangles, kept: BoolArray | None = None) -> Copies:
+        """Where every body stands for itself; kept: (m,) bool, the faces held; None: all."""
+        covered = np.ones(len(triangles), np.bool_) if kept is None else kept
+        held = triangles if covered.all() else triangles.only(covered)
+        return Copies(held, (Group(range(int(held.patches.max()) + 1)),), covered)
 
     def parts(
         self, triangles: Triangles, bits: int, uv_bits: int, crease_angle: float | None = None

@@ -78,10 +78,30 @@ class Simplifier:
         The others, such as those hidden in bodies, may be found where they are, but are not missed.
         Raises MeshError where no face has an area.
         """
-        shown = triangles if kept is None else triangles.only(kept)
-        copies = copies_of(shown, config.copies)
+        copies = copies_of(triangles, config.copies, kept)
+        return Simplifier._of(copies, triangles, kept, coded, config, seed)
+
+    @staticmethod
+    def of_kept(
+        triangles: Triangles, kept: BoolArray, coded: Coded, config: LadderConfig, seed: int
+    ) -> Simplifier:
+        """As `of`, but others than the kept faces are found only where copies have them."""
+        copies = copies_of(triangles, config.copies, kept)
+        there, kept = triangles.only(copies.covered), kept[copies.covered]
+        return Simplifier._of(copies, there, kept, coded, config, seed)
+
+    @staticmethod
+    def _of(
+        copies: Copies,
+        triangles: Triangles,
+        kept: BoolArray | None,
+        coded: Coded,
+        config: LadderConfig,
+        seed: int,
+    ) -> Simplifier:
         source = Source(copies.triangles)
-        tree = source.tree if source.triangles is triangles else Tree(triangles.corners)
+        same = len(source.triangles) == len(triangles)
+        tree = source.tree if same else Tree(triangles.corners)
         original = Original.of(triangles, tree, config.samples, seed, kept)
         return Simplifier(copies, source, original, coded, config, seed)
 
