@@ -39,7 +39,11 @@ def copies_of(triangles: Triangles, config: CopiesConfig, kept: BoolArray | None
         for family in _families(alike, config)
         if family.saves(kept) >= config.fewest * (len(family.copies) - 1) > 0
     ]
-    return _held(spread, kept, families) if families else Copies.none(triangles, kept)
+    return (
+        _held(spread, kept, families, config.fewest_left)
+        if families
+        else Copies.none(triangles, kept)
+    )
 
 
 def _spread(triangles: Triangles, kept: BoolArray) -> BoolArray:
@@ -124,7 +128,9 @@ def _copy(body: Body, copy: Body, config: CopiesConfig) -> tuple[Body, Placement
     return None
 
 
-def _held(triangles: Triangles, kept: BoolArray, families: list[_Family]) -> Copies:
+def _held(
+    triangles: Triangles, kept: BoolArray, families: list[_Family], fewest_left: int
+) -> Copies:
     """Without the copies; patches are numbered group after group, and none is of two bodies."""
     owners, covered = np.where(kept, 0, -1), kept.copy()
     for number, family in enumerate(families, 1):
@@ -141,8 +147,8 @@ def _held(triangles: Triangles, kept: BoolArray, families: list[_Family]) -> Cop
     for family in families:
         own = patches[family.body.faces]
         groups.append(family.group(own, _span(own[own >= 0])))
-    held_triangles = replace(triangles, patches=patches.astype(np.int32)).only(chosen)
-    return Copies(held_triangles, tuple(groups), covered)
+    found = replace(triangles, patches=patches.astype(np.int32)).only(chosen)
+    return Copies.weighed(found, groups, covered, fewest_left)
 
 
 def _span(numbers: Int64Array) -> range:

@@ -17,7 +17,6 @@ from nispcodec.simplify.copies import Copies
 from nispcodec.simplify.copy_search import copies_of
 from nispcodec.simplify.errors import Errors, Original, mesh_of
 from nispcodec.simplify.position_fit import fitted_positions
-from nispcodec.simplify.quantize import Grid
 from nispcodec.simplify.scene import scene
 from nispcodec.simplify.source import Source
 from nispcodec.simplify.triangles import Triangles
@@ -120,8 +119,7 @@ class Simplifier:
         triangles = self.fitted(faces)
         if faces < len(self.source.triangles):
             # UVs are fitted to the places that rounding leaves.
-            places = Grid.of(triangles.positions, bits).rounded(triangles.positions)
-            placed = replace(triangles, positions=places)
+            placed = self.copies.rounded(triangles, bits)
             uvs = fitted_uvs(self.source, placed, self.config.fit, self.seed).uvs
             triangles = replace(triangles, uvs=uvs)
         parts = self.copies.parts(triangles, bits, uv_bits, self.config.crease_angle)
