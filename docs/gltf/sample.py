@@ -15,7 +15,7 @@ import numpy as np
 
 from nispcodec import TexturedMesh
 from nispcodec.core.asset import Material
-from nispcodec.core.document import ChartTable, Document, Frame
+from nispcodec.core.document import ChartTable, Document, Field, Frame
 from nispcodec.core.network import Network, NetworkSpec
 from nispcodec.format import pack
 from nispcodec.io.write.glb import glb_bytes
@@ -52,10 +52,12 @@ def document() -> Document:
     }
     return Document(
         frame=Frame((0.0, 0.0, 0.0), 1.0),
-        charts=ChartTable(np.zeros(1, np.int32), np.zeros(1, np.bool_)),
         materials=(MATERIAL,),
         textures=(),
-        sdf=Network(NetworkSpec((1,), 1, activation="relu", mirror=7), tensors),
+        field=Field(
+            charts=ChartTable(np.zeros(1, np.int32), np.zeros(1, np.bool_)),
+            sdf=Network(NetworkSpec((1,), 1, activation="relu", mirror=7), tensors),
+        ),
     )
 
 

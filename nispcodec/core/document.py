@@ -11,8 +11,11 @@ import numpy as np
 from nispcodec.core.arrays import BoolArray, Float64Array, FloatArray, Int32Array
 from nispcodec.core.asset import Material, Texture
 from nispcodec.core.errors import FormatError
-from nispcodec.core.mesh_part import MeshPart, Placement
+from nispcodec.core.mesh_part import PART, MeshPart, Placement, check_placed_faces
 from nispcodec.core.network import MAX_CHARTS, Network
+
+DOCUMENT = "document"
+"""The section in errors of this module, but for those of mesh parts."""
 
 
 @dataclass(frozen=True)
@@ -130,7 +133,8 @@ class Document:
     `info` holds what was measured and how the file was made: plain str, int, float and bool values.
     `extra` holds the ancillary sections that this version does not know, by four-character code:
     they are kept when the document is written again.
-    Raises FormatError when the parts do not fit together, such as a chart of an unknown material.
+    Raises FormatError when the parts do not fit together, such as a chart of an unknown material,
+    and for more faces or charts with all copies of meshes than a file may have.
     """
 
     frame: Frame
@@ -150,23 +154,26 @@ class Document:
             "none",
         )
         _demand("document.materials", len(self.materials) > 0, "at least one", 0)
-        self._check_charts()
+        if self.field:
+            self._check_materials(DOCUMENT, "document.chart_materials", self.field.charts.materials)
+        self._check_meshes()
         self._check_maps()
 
-    def _check_charts(self) -> None:
-        materials = self.chart_materials
-        _demand(
-            "document.charts",
-            1 <= len(materials) <= MAX_CHARTS,
-            f"1 to {MAX_CHARTS}",
-            len(materials),
-        )
-        _demand(
-            "document.chart_materials",
-            materials.min() >= 0 and materials.max() < len(self.materials),
-            f"0 to {len(self.materials) - 1}",
-            f"{materials.min()} to {materials.max()}",
-        )
+    def _check_meshes(self) -> None:
+        """Counts come first: what copies have is made for each of them."""
+        check_placed_faces(sum(part.placed_faces for part in self.meshes))
+        charts = len(self.field.charts) if self.field else 0
+        charts += sum(part.placed_charts for part in self.meshes)
+        if charts > MAX_CHARTS:
+            raise FormatError(PART, "charts", f"at most {MAX_CHARTS} with all copies", charts)
+        for part, placement in self._placed():
+            self._check_materials(PART, "materials", _materials(part, placement))
+
+    def _check_materials(self, section: str, field_name: str, numbers: Int32Array) -> None:
+        low, high = int(numbers.min(initial=0)), int(numbers.max(initial=0))
+        if low < 0 or high >= len(self.materials):
+            expected = f"0 to {len(self.materials) - 1}"
+            raise FormatError(section, field_name, expected, f"{low} to {high}")
 
     def _check_maps(self) -> None:
         for number, material in enumerate(self.materials):
@@ -205,4 +212,4 @@ def _materials(part: MeshPart, placement: Placement) -> Int32Array:
 
 def _demand(field_name: str, holds: bool, expected: object, found: object) -> None:
     if not holds:
-        raise FormatError("document", field_name, expected, found)
+        raise FormatError(DOCUMENT, field_name, expected, found)

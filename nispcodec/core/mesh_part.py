@@ -3,18 +3,20 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from math import isfinite
 
 import numpy as np
 
-from nispcodec.core.arrays import (
-    AnyArray,
-    BoolArray,
-    Float64Array,
-    Int32Array,
-)
+from nispcodec.core.arrays import AnyArray, BoolArray, Float64Array, Int32Array
 from nispcodec.core.errors import FormatError
 
+PART = "mesh part"
+"""The section in errors of this module, which knows no file."""
 MAX_GRID_BITS = 20
+MAX_PLACED_FACES = 2**21
+"""Faces with all copies: what a search of them takes is about a gigabyte."""
+UNIT_TOLERANCE = 1e-3
+"""How far from 1 the squared length of a rotation in float32 may be."""
 Quaternion = tuple[float, float, float, float]
 
 
@@ -26,6 +28,9 @@ class Placement:
     rotation       unit quaternion, w first
     uv_scale       of the copy's UVs, with uv_offset: asset UV = part UV * uv_scale + uv_offset
     materials      (k,) int32: the copy's material of each chart; None: the part's
+
+    Raises FormatError for numbers that are not finite, a rotation that is no unit quaternion, and
+    a scale that is not above 0.
     """
 
     rotation: Quaternion = (1.0, 0.0, 0.0, 0.0)
@@ -35,6 +40,17 @@ class Placement:
     uv_scale: tuple[float, float] = (1.0, 1.0)
     uv_offset: tuple[float, float] = (0.0, 0.0)
     materials: Int32Array | None = None
+
+    def __post_init__(self) -> None:
+        _finite("rotation", self.rotation)
+        length = sum(part * part for part in self.rotation)
+        unit = abs(length - 1) <= UNIT_TOLERANCE
+        _demand("rotation", unit, "a unit quaternion", self.rotation)
+        _finite("offset", self.offset)
+        _finite("scale", (self.scale,))
+        _demand("scale", self.scale > 0, "above 0", self.scale)
+        _finite("uv_scale", self.uv_scale)
+        _finite("uv_offset", self.uv_offset)
 
 
 @dataclass(frozen=True)
@@ -68,7 +84,7 @@ class MeshPart:
     origin: tuple[float, float, float] = (0.0, 0.0, 0.0)
     uv_step: tuple[float, float] = (1.0, 1.0)
     uv_origin: tuple[float, float] = (0.0, 0.0)
-    placements: tuple[Placement, ...] = field(default=(Placement(),))
+    placements: tuple[Placement, ...] = field(default_factory=lambda: (Placement(),))
 
     def __post_init__(self) -> None:
         faces, charts = len(self.faces), len(self.chart_materials)
@@ -86,8 +102,25 @@ class MeshPart:
         dressed = self.chart_has_uv[self.face_charts]
         _within("uv_faces", self.uv_faces[dressed], 0, len(self.uvs))
         _within("uv_faces", self.uv_faces[~dressed], -1, 0)
+        _finite("step", (self.step,))
         _demand("step", self.step > 0, "above 0", self.step)
+        _finite("origin", self.origin)
+        _finite("uv_step", self.uv_step)
+        _finite("uv_origin", self.uv_origin)
         _demand("placements", len(self.placements) > 0, "at least one", 0)
+        for each in self.placements:
+            if each.materials is not None:
+                _shape("placement_materials", each.materials, (charts,))
+
+    @property
+    def placed_faces(self) -> int:
+        """How many faces all copies have together."""
+        return len(self.faces) * len(self.placements)
+
+    @property
+    def placed_charts(self) -> int:
+        """How many charts all copies have together."""
+        return len(self.chart_materials) * len(self.placements)
 
     def normalized(self) -> Float64Array:
         """(n, 3) float64: the positions in the normalized frame, before any placement."""
@@ -96,6 +129,15 @@ class MeshPart:
     def asset_uvs(self) -> Float64Array:
         """(t, 2) float64: the UVs before any placement."""
         return self.uvs * np.asarray(self.uv_step) + np.asarray(self.uv_origin)
+
+
+def check_placed_faces(count: int) -> None:
+    """Raises FormatError for more faces, with all copies of all parts, than can be searched."""
+    _demand("placed_faces", count <= MAX_PLACED_FACES, f"at most {MAX_PLACED_FACES}", count)
+
+
+def _finite(name: str, values: tuple[float, ...]) -> None:
+    _demand(name, all(map(isfinite, values)), "finite numbers", values)
 
 
 def _shape(name: str, array: AnyArray, expected: tuple[int, ...]) -> None:
@@ -114,4 +156,4 @@ def _within(name: str, array: Int32Array, low: int, end: int) -> None:
 
 def _demand(name: str, holds: bool, expected: object, found: object) -> None:
     if not holds:
-        raise FormatError("mesh part", name, expected, found)
+        raise FormatError(PART, name, expected, found)

@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 from nispcodec.core.document import Document
 from nispcodec.core.errors import FitError, NispError
 from nispcodec.core.mesh_part import MeshPart
-from nispcodec.encode.config import EncodeConfig, FormConfig
+from nispcodec.encode.config import EncodeConfig, Tuning
 from nispcodec.encode.mesh_form import MeshForm
 from nispcodec.format import inspect, pack
 from nispcodec.format.constants import TXTR
@@ -30,13 +30,14 @@ class Chosen:
 
 
 class Choice:
-    """Of one asset: asked before its networks are fitted, when their size is known, and after.
+    """The form of one asset: asked before a fit, when the size of networks is known, and after it.
 
     With `geometry` "auto", the form that is estimated to be clearly larger is not made at all.
     """
 
-    def __init__(self, form: MeshForm, config: EncodeConfig, forms: FormConfig) -> None:
-        self._form, self._config, self._forms = form, config, forms
+    def __init__(self, form: MeshForm, config: EncodeConfig, tuning: Tuning) -> None:
+        self._form, self._config, self._tuning = form, config, tuning
+        self._forms = tuning.forms
         self._estimate, self._field_bytes = 0.0, 0.0
 
     def wants_field(self, size: float, probe_error: float) -> bool:
@@ -88,7 +89,7 @@ class Choice:
         return self._form.best(errors.distance, size)
 
     def _wanted(self, document: Callable[[tuple[MeshPart, ...]], Document]) -> Candidate:
-        config, forms = self._config, self._forms
+        config = self._config
         if config.target_error:
             found = self._form.within(config.target_error, math.inf)
             if found is None:
@@ -96,7 +97,7 @@ class Choice:
                     f"target error: expected {config.target_error:g}, found no mesh as near"
                 )
             return found
-        nearest = forms.most_distance[config.preset]
+        nearest = self._tuning.training.budgets[config.preset].mesh
         if not config.target_size:
             return self._form.best(nearest, self._field_bytes or math.inf)
         least = self._form.of_size(0.0)
@@ -116,6 +117,6 @@ class Choice:
 
 
 def own_bytes(document: Document) -> int:
-    """Of a file, without its images."""
+    """Bytes of a file, without its images."""
     data = pack(document)
     return len(data) - sum(each.stored_length for each in inspect(data) if each.code == TXTR)

@@ -25,7 +25,7 @@ from nispcodec.simplify.triangles import Triangles, distinct_corners
 
 
 def coded_bytes(parts: tuple[MeshPart, ...]) -> int:
-    """What parts add to a file."""
+    """Bytes that parts add to a file."""
     return len(mesh.encode(parts))
 
 
@@ -44,14 +44,14 @@ class MeshForm:
 
     @cached_property
     def simplifier(self) -> Simplifier:
-        """Of the faces that can be seen."""
+        """The maker of candidates, from the faces that can be seen."""
         found = shown(self._analysis)
         triangles = Triangles.of(found.mesh, self._analysis.frame, None, found.sheet)
         kept = found.faces[distinct_corners(found.mesh)]
         return Simplifier.of_kept(triangles, kept, coded_bytes, self._config.ladder, self._seed)
 
     def errors(self, document: Document) -> Errors:
-        """What the surface that a document decodes to is off."""
+        """How far the surface that a document decodes to is off."""
         self._progress(Progress(stage="surface"))
         mesh, _ = textured_mesh(document)
         positions = document.frame.to_normalized(mesh.positions)

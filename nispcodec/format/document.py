@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass
 
 from nispcodec.core.asset import Texture
 from nispcodec.core.document import Document, Field, StoredSection
 from nispcodec.core.errors import FormatError
+from nispcodec.core.mesh_part import PART, MeshPart
 from nispcodec.format import mesh, metadata, weights
 from nispcodec.format.constants import MESH, META, NETS, SECTIONS, TXTR
 from nispcodec.format.container import Entry, content, read_container, write_container
@@ -83,10 +85,12 @@ def _parse(data: bytes) -> tuple[Document, dict[str, Entry], dict[str, int]]:
     entries = _by_code(read_container(data))
     meta = metadata.decode(_required(entries, META))
     field, lengths = _read_field(meta, entries)
-    meshes = mesh.decode(_required(entries, MESH)) if MESH in entries else ()
+    meshes: tuple[MeshPart, ...] = ()
+    if MESH in entries or field is None:
+        meshes = mesh.decode(_required(entries, MESH))
     textures = _read_textures(meta, entries)
     unknown = {code: entry for code, entry in entries.items() if code not in SECTIONS}
-    with located(META, ""):
+    with _located_in_meta_or_mesh():
         document = Document(
             frame=meta.frame,
             materials=meta.materials,
@@ -99,6 +103,16 @@ def _parse(data: bytes) -> tuple[Document, dict[str, Entry], dict[str, int]]:
     return document, entries, lengths
 
 
+@contextmanager
+def _located_in_meta_or_mesh() -> Iterator[None]:
+    """Raises a document's errors as those of the section that has what is wrong."""
+    try:
+        yield
+    except FormatError as error:
+        section = MESH if error.section == PART else META
+        raise FormatError(section, error.field, error.expected, error.found) from error
+
+
 def _read_field(
     meta: metadata.Metadata, entries: Mapping[str, Entry]
 ) -> tuple[Field | None, dict[str, int]]:
@@ -108,7 +122,7 @@ def _read_field(
             raise FormatError(NETS, "section", "absent without networks", "present")
         return None, {}
     networks, lengths = weights.decode(meta.specs, _required(entries, NETS))
-    with located(META, "document"):
+    with located(META, ""):
         field = Field(
             charts=meta.charts,
             sdf=networks["sdf"],

@@ -8,11 +8,9 @@ import numpy as np
 
 from nispcodec.core.arrays import BoolArray, Float64Array, Int32Array
 from nispcodec.core.errors import FormatError
-from nispcodec.core.mesh_part import MeshPart, Placement
+from nispcodec.core.mesh_part import PART, MeshPart, Placement, check_placed_faces
 from nispcodec.core.placing import placed_points
 
-MAX_PLACED_FACES = 2**21
-"""What a search of them takes is about a gigabyte."""
 FAR = 1e6
 """In radii of the asset: squares of squares of coordinates are far from what float64 holds."""
 
@@ -44,7 +42,7 @@ class PlacedTriangles:
         Raises FormatError where there are more than MAX_PLACED_FACES, or one leaves the cube of
         FAR radii: small files can claim large scenes.
         """
-        _check_count(parts)
+        check_placed_faces(sum(part.placed_faces for part in parts))
         copies = [_placed(part, each) for part in parts for each in part.placements]
         if not copies:
             return _none()
@@ -62,18 +60,10 @@ class PlacedTriangles:
         )
 
 
-def _check_count(parts: tuple[MeshPart, ...]) -> None:
-    count = sum(len(part.faces) * len(part.placements) for part in parts)
-    if count > MAX_PLACED_FACES:
-        raise FormatError(
-            "mesh part", "placements", f"at most {MAX_PLACED_FACES} faces with all copies", count
-        )
-
-
 def _check_place(corners: Float64Array) -> None:
     far = np.abs(corners).max(initial=0)
     if not far <= FAR:
-        raise FormatError("mesh part", "placements", f"coordinates up to {FAR:g}", float(far))
+        raise FormatError(PART, "placements", f"coordinates up to {FAR:g}", float(far))
 
 
 def _none() -> PlacedTriangles:

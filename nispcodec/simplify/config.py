@@ -1,4 +1,4 @@
-"""The tuned numbers of simplification, each with its unit and reason; measured in decision 0215."""
+"""The tuned numbers of simplification, each with its unit and reason; measured in decision 0198."""
 
 from __future__ import annotations
 

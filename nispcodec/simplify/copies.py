@@ -42,7 +42,7 @@ class Group:
     def part(
         self, home: Triangles, grid: Grid, uv_grid: Grid, crease_angle: float | None
     ) -> MeshPart:
-        """What was made of the bodies, in the normalized frame, with all placements."""
+        """The part made of the bodies, given in the normalized frame, with all placements."""
         part = on_grids(home, grid, uv_grid, crease_angle)
         placements = []
         for placement, by_patch in zip(self.placements, self.materials, strict=True):
@@ -54,7 +54,7 @@ class Group:
         return replace(part, placements=tuple(placements))
 
     def copies(self, home: Triangles) -> Iterator[Triangles]:
-        """What was made of the bodies, in every place, for itself."""
+        """The simplified bodies in every place, each for itself."""
         for placement, by_patch in zip(self.placements, self.materials, strict=True):
             order = [0, 2, 1] if placement.mirrored else [0, 1, 2]
             copy = home if by_patch is None else self._painted(home, by_patch)
@@ -112,7 +112,7 @@ class Copies:
     def parts(
         self, triangles: Triangles, bits: int, uv_bits: int, crease_angle: float | None = None
     ) -> tuple[MeshPart, ...]:
-        """What was made of the triangles by simplifying as parts, rounded as `quantized` rounds.
+        """The simplified triangles as parts, rounded as `quantized` rounds.
 
         All have one grid. A group of which no face is left has no part; copies of one of which few
         are left are faces like others.
@@ -124,7 +124,7 @@ class Copies:
         )
 
     def rounded(self, triangles: Triangles, bits: int) -> Triangles:
-        """What was made of the triangles, positions as `parts` rounds them."""
+        """The simplified triangles, positions as `parts` rounds them."""
         grid = Grid.of(triangles.positions, bits)
         if len(self.groups) == 1 and self.groups[0].placements == (Placement(),):
             return replace(triangles, positions=grid.rounded(triangles.positions))
@@ -133,12 +133,12 @@ class Copies:
         return replace(triangles, positions=places * weights + shifts)
 
     def scene(self, triangles: Triangles) -> TexturedMesh:
-        """What was made of the triangles with all its copies, in the materials of the bodies."""
+        """The triangles with all their copies, in the materials of the bodies."""
         pieces = _pieces(triangles, self.groups)
         return scene([(group.home(piece).mesh(), group.placements) for group, piece in pieces])
 
     def _held(self, triangles: Triangles) -> Iterator[tuple[Group, Triangles]]:
-        """What makes a part each, in the normalized frame: first all that has no placements."""
+        """The triangles of each part, in the normalized frame; first all that has no placements."""
         plain, held = [], []
         for group, piece in _pieces(triangles, self.groups):
             home = group.home(piece)

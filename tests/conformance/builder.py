@@ -5,9 +5,18 @@ from __future__ import annotations
 import struct
 import zlib
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, NamedTuple
 
 SIGNATURE = b"\x89NSP\r\n\x1a\n"
+
+
+class Malformed(NamedTuple):
+    """A file that must be refused, and why."""
+
+    name: str
+    data: bytes
+    section: str
+    field: str
 
 
 @dataclass(frozen=True)

@@ -7,7 +7,6 @@ from typing import Any
 from nispcodec.core.asset import Material
 from nispcodec.core.document import Document
 from tests.conformance import independent_meta
-from tests.tiny import field_of
 
 KEPT = ("frame", "charts", "uv_map", "half_thickness", "openings")
 EXACT = 2**53
@@ -23,6 +22,7 @@ def described(reader: Any) -> dict[str, Any]:
     ]
     return {
         **sparse("document", {name: reader.meta[name] for name in KEPT}),
+        **meshes(reader.parts),
         "materials": materials,
         "textures": [
             {"name": each["name"], "mime": each["mime"], "length": length}
@@ -34,17 +34,19 @@ def described(reader: Any) -> dict[str, Any]:
 
 def by_the_library(document: Document) -> dict[str, Any]:
     """The same of a document."""
-    field, frame = field_of(document), document.frame
-    table = field.charts
-    fields = {
-        "frame": [*frame.center, frame.radius],
-        "charts": len(table),
-        "uv_map": [*table.uv_offset, *table.uv_scale],
-        "half_thickness": field.half_thickness,
-        "openings": table.openings,
-    }
+    frame = document.frame
+    fields: dict[str, Any] = {"frame": [*frame.center, frame.radius]}
+    if document.field:
+        table = document.field.charts
+        fields |= {
+            "charts": len(table),
+            "uv_map": [*table.uv_offset, *table.uv_scale],
+            "half_thickness": document.field.half_thickness,
+            "openings": table.openings,
+        }
     return {
         **sparse("document", fields),
+        **meshes([vars(part) for part in document.meshes]),
         "materials": [material(each) for each in document.materials],
         "textures": [
             {"name": each.name, "mime": each.mime, "length": len(each.data)}
@@ -52,6 +54,25 @@ def by_the_library(document: Document) -> dict[str, Any]:
         ],
         "info": {name: plain(value) for name, value in document.info.items()},
     }
+
+
+def meshes(parts: list[dict[str, Any]]) -> dict[str, Any]:
+    """Of each mesh part how much there is of what, and its creases as numbers of sides."""
+    found = [
+        {
+            "faces": len(part["faces"]),
+            "charts": len(part["chart_materials"]),
+            "placements": len(part["placements"]),
+            "creases": [
+                3 * face + corner
+                for face, three in enumerate(part["creases"])
+                for corner in range(3)
+                if three[corner]
+            ],
+        }
+        for part in parts
+    ]
+    return {"meshes": found} if found else {}
 
 
 def material(each: Material) -> dict[str, Any]:

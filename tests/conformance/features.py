@@ -20,13 +20,14 @@ from nispcodec.core.document import ChartTable, Document, Field, Frame, StoredSe
 from nispcodec.core.initial_weights import predicted
 from nispcodec.core.network import Network, NetworkSpec
 from nispcodec.core.slots import SLOTS
-from nispcodec.format import metadata, pack, weights
+from nispcodec.format import mesh, metadata, pack, weights
 from nispcodec.format.codings import entropy
 from nispcodec.format.codings.registry import BY_NAME
 from nispcodec.format.records import Record, tensors
 from nispcodec.infer.evaluate import evaluate
-from tests.conformance.builder import change, container
+from tests.conformance.builder import Row, change, container
 from tests.conformance.malformed import rows, squeezed, with_dictionary
+from tests.conformance.mesh_features import asset, box, mesh_features
 from tests.tiny import field_of, varied
 
 SYMBOL_STEP = 2.0**-9
@@ -155,6 +156,16 @@ def features() -> Iterator[tuple[str, bytes]]:
     yield from _not_finite()
     yield from _containers()
     yield from _messages()
+    for name, made in mesh_features(textured().textures[0], textured()):
+        yield name, pack(made)
+    yield "mesh-zeros-at-the-end", _zeros_at_the_end()
+
+
+def _zeros_at_the_end() -> bytes:
+    """More bytes of 0 than the faces want."""
+    content = mesh.encode((box(),)) + bytes(7)
+    meta = metadata.encode(asset(box()))
+    return container([Row(b"MESH", content), Row(b"META", meta)])
 
 
 def _codings() -> Iterator[tuple[str, bytes]]:

@@ -6,6 +6,7 @@ refused raises an exception of any kind.
 
 from __future__ import annotations
 
+import math
 from io import BytesIO
 from typing import Any
 
@@ -13,13 +14,13 @@ import numpy as np
 import zstandard
 from PIL import Image
 
-from tests.conformance import independent_meta
+from tests.conformance import independent_mesh, independent_meta
 from tests.format import spec
 
 DECODER = spec.decoder()
 CAPS = independent_meta.CAPS
 NETWORKS = ("sdf", "chart", "uv")
-KNOWN = ("META", "NETS", "TXTR")
+KNOWN = ("MESH", "META", "NETS", "TXTR")
 FORMATS = ("PNG", "JPEG", "WEBP", "AVIF")
 
 
@@ -31,12 +32,19 @@ class Reader:
         check_sections(rows)
         self.meta = independent_meta.read_document(unpacked(rows["META"]))
         assert ("TXTR" in rows) == bool(self.meta["textures"])
-        self.k = self.meta["charts"]
         self.specs: dict[str, Any] = self.meta["networks"]
+        assert ("NETS" in rows) == bool(self.specs)
+        assert "MESH" in rows or self.specs
+        self.k = self.meta["charts"] if self.specs else 0
         tensors = [(self.shapes(name), made["init_seed"]) for name, made in self.specs.items()]
         assert sum(r * c for shapes, _ in tensors for r, c in shapes) <= CAPS["MAX_WEIGHTS"]
-        weights = DECODER["read_nets"](unpacked(rows["NETS"]), tensors)
+        weights = DECODER["read_nets"](unpacked(rows["NETS"]), tensors) if self.specs else []
         self.weights = dict(zip(self.specs, weights, strict=True))
+        self.parts = DECODER["read_mesh"](unpacked(rows["MESH"])) if "MESH" in rows else []
+        self.mesh = independent_mesh.Triangles(DECODER, self.parts, len(self.meta["materials"]))
+        self.chart_materials = self.meta["chart_materials"] + self.mesh.chart_materials
+        self.chart_has_uv = self.meta["chart_has_uv"] + self.mesh.chart_has_uv
+        assert len(self.chart_materials) <= CAPS["MAX_CHARTS"]
         self.files = images(
             self.meta["textures"], unpacked(rows["TXTR"]) if "TXTR" in rows else b""
         )
@@ -63,11 +71,24 @@ class Reader:
         answer: list[float] = DECODER["evaluate"](made, self.k, weights, point, chart)
         return answer
 
+    def distances(self, point: list[float]) -> list[float]:
+        """Signed, of the field and of the mesh parts; infinite where there are none."""
+        field = self.ask("sdf", point)[0] if self.specs else math.inf
+        return [field, self.mesh.ask(point)[0] if self.parts else math.inf]
+
     def distance(self, point: list[float]) -> float:
         """The signed distance, normalized frame."""
-        return self.ask("sdf", point)[0]
+        field, mesh = self.distances(point)
+        return min(field, mesh) if self.parts else field
 
     def chart(self, point: list[float], closed: int = 0) -> int:
+        """That of the part which is nearest, of the field's but for the last `closed`."""
+        field, mesh = self.distances(point)
+        if self.parts and abs(mesh) < abs(field):
+            return self.k + self.mesh.charts[self.mesh.ask(point)[1]]
+        return self.field_chart(point, closed)
+
+    def field_chart(self, point: list[float], closed: int) -> int:
         """The largest logit but for the last `closed`, of equal ones the first; 0 with a NaN."""
         logits = self.ask("chart", point) if "chart" in self.specs else [0.0]
         largest: int = DECODER["largest"](logits[: self.k - closed])
@@ -75,8 +96,10 @@ class Reader:
 
     def uv(self, point: list[float], chart: int) -> list[float]:
         """The place in the asset's UV."""
-        if not self.meta["chart_has_uv"][chart]:
+        if not self.chart_has_uv[chart]:
             return [0.0, 0.0]
+        if chart >= self.k:
+            return self.mesh.uv(point, chart - self.k)
         u, v = self.ask("uv", point, chart)
         left, low, wide, high = self.meta["uv_map"]
         return [u * wide + left, v * high + low]
@@ -88,10 +111,10 @@ class Reader:
 
     def color_at(self, uv: list[float], chart: int) -> list[float]:
         """RGBA at a UV of a chart."""
-        material = self.meta["materials"][self.meta["chart_materials"][chart]]
+        material = self.meta["materials"][self.chart_materials[chart]]
         used = material["maps"].get("base_color")
         texels = None
-        if used is not None and self.meta["chart_has_uv"][chart]:
+        if used is not None and self.chart_has_uv[chart]:
             wraps = used["wrap_u"], used["wrap_v"]
             texels = DECODER["look_up"](self.image(used["texture"]), *uv, *wraps, used["filter"])
         found: list[float] = DECODER["color"](material["base_color"], texels)
@@ -107,7 +130,6 @@ class Reader:
 def check_sections(rows: dict[str, Any]) -> None:
     """Which sections there must be and may be."""
     assert "META" in rows
-    assert "NETS" in rows
     for code, critical, *_ in rows.values():
         assert critical == (code in KNOWN)
     packed = sum(row[4] for row in rows.values() if row[2])

@@ -21,6 +21,7 @@ LENGTHS = {
     "array": {0xDC: 2, 0xDD: 4},
     "map": {0xDE: 2, 0xDF: 4},
 }
+OF_FIELDS = ("charts", "chart_materials", "chart_has_uv", "uv_map", "half_thickness", "openings")
 FIX = {"map": (0x80, 15), "array": (0x90, 15), "str": (0xA0, 31)}
 
 
@@ -134,19 +135,28 @@ def is_single(number: float) -> bool:
 def read_document(data: bytes) -> dict[str, Any]:
     """META's fields by name, defaults filled in, everything checked that META alone shows."""
     fields = named("document", MessagePack(data).whole())
-    names = dict(enumerate(spec.enumeration("NETWORKS"), 1))
-    assert fields["networks"].keys() <= names.keys()
-    assert 1 in fields["networks"]
-    fields["networks"] = {
-        names[number]: check_network(names[number], named(FRAME_OF_NETWORKS, value))
-        for number, value in fields["networks"].items()
-    }
+    fields["networks"] = read_networks(fields)
     fields["materials"] = [read_material(value) for value in fields["materials"]]
     fields["textures"] = read_textures(fields["textures"])
     fields["info"] = {read_key(key): value for key, value in fields["info"].items()}
     fields["info"] = {name: read_measure(name, value) for name, value in fields["info"].items()}
     check_document(fields)
     return fields
+
+
+def read_networks(fields: dict[str, Any]) -> dict[str, Any]:
+    """The networks by name; without them nothing else is said about a field."""
+    if fields["networks"] is None:
+        usual = defaults("document")
+        assert all(fields[name] == usual[name] for name in OF_FIELDS)
+        return {}
+    names = dict(enumerate(spec.enumeration("NETWORKS"), 1))
+    assert fields["networks"].keys() <= names.keys()
+    assert 1 in fields["networks"]
+    return {
+        names[number]: check_network(names[number], named(FRAME_OF_NETWORKS, value))
+        for number, value in fields["networks"].items()
+    }
 
 
 def named(table: str, value: Any) -> dict[str, Any]:
@@ -183,8 +193,8 @@ DEFAULTS: dict[str, Any] = {
 
 def parsed(kind: str, default: str) -> Any:
     """A default, from the word in the table."""
-    if default in DEFAULTS:
-        return DEFAULTS[default]
+    if default in DEFAULTS or (kind, default) == ("map", "none"):
+        return DEFAULTS.get(default)
     if kind.startswith("[float"):
         return [float(number) for number in default.split(",")]
     if kind == "float":
@@ -316,16 +326,24 @@ def check_document(fields: dict[str, Any]) -> None:
     """What fields say of each other; chart tables become lists."""
     k, count = fields["charts"], len(fields["materials"])
     assert fields["frame"][3] > 0
-    assert 1 <= k <= CAPS["MAX_CHARTS"]
     assert count >= 1
+    for material in fields["materials"]:
+        for used in material["maps"].values():
+            assert 0 <= used["texture"] < len(fields["textures"])
+    if fields["networks"]:
+        check_field(fields, k, count)
+    else:
+        fields["chart_materials"], fields["chart_has_uv"] = [], []
+
+
+def check_field(fields: dict[str, Any], k: int, count: int) -> None:
+    """What fields say of networks and their charts."""
+    assert 1 <= k <= CAPS["MAX_CHARTS"]
     fields["chart_materials"] = chart_materials(fields["chart_materials"], k, count)
     fields["chart_has_uv"] = chart_flags(fields["chart_has_uv"], k)
     assert ("chart" in fields["networks"]) == (k >= 2)
     assert ("uv" in fields["networks"]) == any(fields["chart_has_uv"])
     assert not fields["openings"] or (k >= 2 and not fields["chart_has_uv"][-1])
-    for material in fields["materials"]:
-        for used in material["maps"].values():
-            assert 0 <= used["texture"] < len(fields["textures"])
 
 
 def chart_materials(data: bytes | None, k: int, count: int) -> list[int]:

@@ -8,24 +8,15 @@ from __future__ import annotations
 
 import struct
 from collections.abc import Iterator
-from typing import Any, NamedTuple
+from typing import Any
 
 import msgpack
 import numpy as np
 import zstandard
 
 from nispcodec.format.codings import entropy
-from tests.conformance.builder import Row, change, container
-
-
-class Malformed(NamedTuple):
-    """A file that must be refused, and why."""
-
-    name: str
-    data: bytes
-    section: str
-    field: str
-
+from tests.conformance.builder import Malformed, Row, change, container
+from tests.conformance.malformed_mesh import mesh_malformed
 
 FRAME = [0.0, 0.0, 0.0, 1.0]
 META: dict[int, Any] = {1: FRAME, 2: {1: {1: [2]}}, 5: b"\0"}
@@ -90,6 +81,7 @@ def all_malformed() -> Iterator[Malformed]:
     yield from _tensors()
     yield from _sparse()
     yield from _entropy()
+    yield from mesh_malformed()
 
 
 def _headers() -> Iterator[Malformed]:
@@ -278,7 +270,7 @@ _FIELDS: dict[str, tuple[dict[int, Any], str]] = {
     "info-empty": ({10: {}}, "document.info"),
     "info-list": ({10: [1]}, "document.info"),
     "info-key-reserved": ({10: {0: 1}}, "document.info.0"),
-    "info-key-unknown": ({10: {9: 1}}, "document.info.9"),
+    "info-key-unknown": ({10: {10: 1}}, "document.info.10"),
     "info-key-by-name": ({10: {"seed": 1}}, "document.info.seed"),
     "info-key-bool": ({10: {True: 1}}, "document.info.True"),
     "info-value": ({10: {1: [1]}}, "document.info.preset"),

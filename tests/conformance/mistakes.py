@@ -1,7 +1,8 @@
 """Mistakes that a reader may make, each caught by a file: `python -m tests.conformance.mistakes`.
 
 A mistake, of those in `mistakes.toml`, is a change to the text of the independent reader: to the
-Python blocks of `format_spec.md`, or to `independent.py` or `independent_meta.py`. A file catches
+Python blocks of `format_spec.md`, or to `independent.py`, `independent_mesh.py` or
+`independent_meta.py`. A file catches
 it when the changed reader answers it wrongly, refuses it though it is sound, or reads it though it
 is malformed.
 """
@@ -40,6 +41,7 @@ def changed_reader(mistake: Mistake) -> Any:
     texts = {
         "spec": "\n".join(spec.blocks("python")),
         "independent_meta": (HERE / "independent_meta.py").read_text(),
+        "independent_mesh": (HERE / "independent_mesh.py").read_text(),
         "independent": (HERE / "independent.py").read_text(),
     }
     places = [name for name, text in texts.items() for _ in range(text.count(mistake.right))]
@@ -50,9 +52,11 @@ def changed_reader(mistake: Mistake) -> Any:
     exec(texts["spec"], decoder)
     meta = types.ModuleType("meta")
     exec(texts["independent_meta"], vars(meta))
+    mesh = types.ModuleType("mesh")
+    exec(texts["independent_mesh"], vars(mesh))
     module = types.ModuleType("independent")
     exec(texts["independent"], vars(module))
-    vars(module).update(DECODER=decoder, independent_meta=meta)
+    vars(module).update(DECODER=decoder, independent_meta=meta, independent_mesh=mesh)
     return module.Reader
 
 
@@ -77,17 +81,27 @@ def _answers(read: Any, wanted: dict[str, Any]) -> bool:
     if described(read) != wanted["document"]:
         return False
     scale = np.maximum(np.abs(read.meta["uv_map"][2:]), 1)
+    sdf = TOLERANCE["sdf"] if read.specs else TOLERANCE["mesh_sdf"]
     for row, point in enumerate(wanted["points"]):
         chart = wanted["chart"][row]
         right = (
             read.chart(point) == chart
-            and _close(read.distance(point), wanted["sdf"][row], TOLERANCE["sdf"])
+            and _close(read.distance(point), wanted["sdf"][row], sdf)
             and _close(read.uv(point, chart), wanted["uv"][row], TOLERANCE["uv"] * scale)
             and _close(read.color(point), wanted["color"][row], TOLERANCE["color"])
+            and _elsewhere(read, point, wanted, row)
         )
         if not right:
             return False
     return True
+
+
+def _elsewhere(read: Any, point: Any, wanted: dict[str, Any], row: int) -> bool:
+    """Whether the UV on a chart that is not the nearest is right, where one is told."""
+    if "other_chart" not in wanted:
+        return True
+    found = read.uv(point, wanted["other_chart"][row])
+    return _close(found, wanted["other_uv"][row], TOLERANCE["uv"])
 
 
 def _close(found: Any, wanted: Any, tolerance: Any) -> bool:

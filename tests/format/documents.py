@@ -17,9 +17,11 @@ from nispcodec.core.asset import (
     TextureMap,
 )
 from nispcodec.core.document import ChartTable, Document, Field, Frame, StoredSection
+from nispcodec.core.mesh_part import MeshPart
 from nispcodec.core.network import ACTIVATIONS, CONDITIONINGS, OUTPUTS, Network, NetworkSpec
 from nispcodec.core.slots import SLOTS
 from nispcodec.format.constants import SECTIONS
+from tests.format.mesh.parts import faces_of
 
 
 def network(spec: NetworkSpec, seed: int = 0, scale: float = 1.0) -> Network:
@@ -197,7 +199,9 @@ def documents(draw: st.DrawFn) -> Document:
 def assert_same(first: Document, second: Document) -> None:
     """Equal in everything, weights exactly."""
     assert first.frame == second.frame
-    _assert_same_tables(first.field, second.field)
+    if first.field or second.field:
+        _assert_same_tables(first.field, second.field)
+    _assert_same_meshes(first.meshes, second.meshes)
     assert first.materials == second.materials
     assert first.textures == second.textures
     assert first.extra == second.extra
@@ -212,6 +216,16 @@ def assert_same(first: Document, second: Document) -> None:
         for key, tensor in network_.tensors.items():
             np.testing.assert_array_equal(tensor, other.tensors[key])
             assert np.float32(network_.steps.get(key, 0)) == np.float32(other.steps.get(key, 0))
+
+
+def _assert_same_meshes(first: tuple[MeshPart, ...], second: tuple[MeshPart, ...]) -> None:
+    for one, other in zip(first, second, strict=True):
+        assert faces_of(one) == faces_of(other)
+        assert (one.step, one.origin) == (other.step, other.origin)
+        assert (one.uv_step, one.uv_origin) == (other.uv_step, other.uv_origin)
+        for place, again in zip(one.placements, other.placements, strict=True):
+            assert replace(place, materials=None) == replace(again, materials=None)
+            assert (place.materials is None) == (again.materials is None)
 
 
 def _assert_same_tables(first: Field | None, second: Field | None) -> None:

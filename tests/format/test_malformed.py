@@ -6,8 +6,8 @@ import pytest
 
 from nispcodec.core.errors import FormatError
 from nispcodec.format import inspect, unpack
-from tests.conformance.builder import container
-from tests.conformance.malformed import Malformed, all_malformed, rows
+from tests.conformance.builder import Malformed, container
+from tests.conformance.malformed import all_malformed, rows
 
 ALL = list(all_malformed())
 

@@ -13,8 +13,12 @@ import random
 import sys
 import time
 import tracemalloc
+from dataclasses import replace
+
+import numpy as np
 
 from nispcodec.core.errors import FormatError
+from nispcodec.core.mesh_part import Placement
 from nispcodec.format.constants import MESH_FACES_PER_BYTE
 from nispcodec.format.mesh import decode, encode
 from tests.format.mesh.parts import box, grid
@@ -28,7 +32,10 @@ CHECKED = 50
 def seeds() -> list[bytes]:
     """Contents that are valid, short ones first."""
     parts = (box(), grid(2), grid(3, turned=True))
-    return [b"", *(encode((part,)) for part in parts), encode(parts), encode((grid(9),))]
+    copies = Placement(), Placement(offset=(0.5, 0.0, 0.0), materials=np.zeros(1, np.int32))
+    several = replace(box(), placements=copies * 9)
+    contents = [*((part,) for part in parts), parts, (grid(9),), (several,)]
+    return [encode(content) for content in contents]
 
 
 def mutated(generator: random.Random, data: bytes) -> bytes:

@@ -41,6 +41,7 @@ def test_distances_and_closest_triangles(name: str) -> None:
 def test_where_a_copy_is() -> None:
     rng = np.random.default_rng(0)
     turn: Float64Array = rng.normal(size=4)
+    turn /= np.linalg.norm(turn)
     plain = Placement(tuple(turn.tolist()), (0.1, 0.2, -0.3), 0.7)
     points = rng.normal(size=(5, 3))
     for placement in (plain, replace(plain, mirrored=True)):

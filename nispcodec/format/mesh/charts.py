@@ -64,7 +64,7 @@ def code(coder: BinaryCoder, joined: Int64Array, given: Given | None) -> Charts:
         highest = _highest(given)
     bits = coder.bits(highest.bit_length(), 5)
     if bits > MATERIAL_BITS:
-        raise FormatError(SECTION, "material bits", f"at most {MATERIAL_BITS}", bits)
+        raise FormatError(SECTION, "material_bits", f"at most {MATERIAL_BITS}", bits)
     has_uv, material = [1], [0]
     for dressed, number in wanted:
         has_uv.append(coder.bit(dressed, slots.HAS_UV, has_uv[-1], has_uv[-1], has_uv[-1]))
@@ -76,14 +76,11 @@ def code(coder: BinaryCoder, joined: Int64Array, given: Given | None) -> Charts:
 def _highest(given: Given) -> int:
     """The highest material of charts and their copies.
 
-    Raises FormatError for negative ones, and for copies with other than one for each chart.
+    Raises FormatError for negative ones.
     """
     part = given.part
     tables = [part.chart_materials]
     tables += [each.materials for each in part.placements if each.materials is not None]
-    charts = len(part.chart_materials)
-    if any(len(table) != charts for table in tables):
-        raise FormatError(SECTION, "placement materials", charts, [len(each) for each in tables])
     materials = np.stack(tables)[:, np.unique(part.face_charts)]
     if materials.min() < 0:
         raise FormatError(SECTION, "materials", "0 or more", materials.min())

@@ -165,7 +165,7 @@ class Growth:
         third = self._third(gate, action, third)
         point = self._start[third]
         if point in (self._start[gate], self._start[self._next[gate]]):
-            raise FormatError(SECTION, "third point", "another than the gate's", point)
+            raise FormatError(SECTION, "third_point", "another than the gate's", point)
         left, right = self._insert(gate, point, third, face)
         if action == slots.RIGHT:
             self._close(right, self._next[right])

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import struct
-from math import isfinite
+from math import inf, isfinite
 
 from nispcodec.core.errors import FormatError
 from nispcodec.format.mesh import slots
@@ -37,11 +37,19 @@ def single(coder: BinaryCoder, value: float, slot: int, name: str) -> float:
         return 0.0
     if flag(coder, value == 1, slot + 1):
         return 1.0
-    pattern = struct.unpack("<I", struct.pack("<f", value))[0]
-    (found,) = struct.unpack("<f", struct.pack("<I", coder.bits(pattern, SINGLE_BITS)))
+    (found,) = struct.unpack("<f", struct.pack("<I", coder.bits(_pattern(value), SINGLE_BITS)))
     if not isfinite(found):
         raise FormatError(SECTION, name, "a finite number", found)
     return float(found)
+
+
+def _pattern(value: float) -> int:
+    """The bits of the nearest float32, infinite where there is none."""
+    try:
+        packed = struct.pack("<f", value)
+    except OverflowError:
+        packed = struct.pack("<f", inf)
+    return int.from_bytes(packed, "little")
 
 
 def member(coder: BinaryCoder, value: int, bits: int, last: int) -> int:

@@ -26,21 +26,25 @@ from nispcodec.format.mesh.connectivity import Growth, Known, Surface
 from nispcodec.format.mesh.fields import number, single
 from nispcodec.format.mesh.positions import Vector
 from nispcodec.format.mesh.surface import Given
+from nispcodec.format.record import located
 
 NONE = (0.0, 0.0, 0.0)
 
 
-def code(coder: BinaryCoder, most: int, part: MeshPart | None) -> MeshPart:
-    """A part of at most `most` faces, as it is decoded. Raises FormatError."""
+def code(coder: BinaryCoder, most: int, part: MeshPart | None) -> tuple[MeshPart, int]:
+    """A part, as it is decoded, and what it leaves of `most`.
+
+    The latter bounds faces, placements and their materials together. Raises FormatError.
+    """
     count = number(coder, len(part.faces) if part else 0, most, "faces")
     if count == 0:
         raise FormatError(SECTION, "faces", "at least one", 0)
-    bits = _grid_bits(coder, part.positions[part.faces] if part else None, "position bits")
-    uv_bits = _grid_bits(coder, _used_uvs(part) if part else None, "uv bits")
+    bits = _grid_bits(coder, part.positions[part.faces] if part else None, "position_bits")
+    uv_bits = _grid_bits(coder, _used_uvs(part) if part else None, "uv_bits")
     step = single(coder, part.step if part else 0.0, slots.STEP, "step")
     x, y, z = _singles(coder, part.origin if part else NONE, slots.ORIGIN, "origin")
-    su, sv = _singles(coder, part.uv_step if part else NONE[:2], slots.UV_STEP, "uv step")
-    u, v = _singles(coder, part.uv_origin if part else NONE[:2], slots.UV_ORIGIN, "uv origin")
+    su, sv = _singles(coder, part.uv_step if part else NONE[:2], slots.UV_STEP, "uv_step")
+    u, v = _singles(coder, part.uv_origin if part else NONE[:2], slots.UV_ORIGIN, "uv_origin")
     surface, given = _surface(coder, count, part)
     corners, places = _places(coder, surface, bits, given)
     twin = np.array(surface.twin, np.int64)
@@ -50,9 +54,10 @@ def code(coder: BinaryCoder, most: int, part: MeshPart | None) -> MeshPart:
     found = charts.code(coder, joined, given)
     at = [places[vertex] for vertex in corners]
     uvs, uv_faces = _uvs(coder, joined, found, at, uv_bits, given)
-    copied = placements.code(coder, found, most, part.placements if part else None)
-    try:
-        return MeshPart(
+    wanted = part.placements if part else None
+    copied, left = placements.code(coder, found, most - count, wanted)
+    with located(SECTION, ""):
+        made = MeshPart(
             positions=np.array(places, np.int32),
             faces=np.array(corners, np.int32).reshape(-1, 3),
             uvs=uvs,
@@ -68,8 +73,7 @@ def code(coder: BinaryCoder, most: int, part: MeshPart | None) -> MeshPart:
             uv_origin=(u, v),
             placements=copied,
         )
-    except FormatError as error:
-        raise FormatError(SECTION, error.field, error.expected, error.found) from None
+    return made, left
 
 
 def _used_uvs(part: MeshPart) -> Int32Array:

@@ -12,18 +12,17 @@ from nispcodec.format.mesh import slots
 from nispcodec.format.mesh.binary_coder import SECTION, BinaryCoder
 from nispcodec.format.mesh.charts import Charts
 from nispcodec.format.mesh.fields import flag, member, number, single
-
-UNIT_TOLERANCE = 1e-3
-"""How far from 1 the squared length of a rotation in float32 may be."""
+from nispcodec.format.record import located
 
 
 def code(
     coder: BinaryCoder, charts: Charts, most: int, given: tuple[Placement, ...] | None
-) -> tuple[Placement, ...]:
-    """All placements; `most` bounds how many materials they have together. Raises FormatError."""
+) -> tuple[tuple[Placement, ...], int]:
+    """All placements, and what they and their materials leave of `most`. Raises FormatError."""
     if flag(coder, _is_plain(given), slots.ONE_PLACE):
-        return (Placement(),)
-    count = number(coder, len(given or ()), MAX_MESH_PLACEMENTS, "placements")
+        return (Placement(),), most
+    count = number(coder, len(given or ()), min(MAX_MESH_PLACEMENTS, most), "placements")
+    most -= count
     if count == 0:
         raise FormatError(SECTION, "placements", "at least one", 0)
     found = []
@@ -31,7 +30,7 @@ def code(
         wanted = given[place] if given is not None else Placement()
         found.append(_code(coder, charts, most, wanted))
         most -= len(charts.materials) if found[-1].materials is not None else 0
-    return tuple(found)
+    return tuple(found), most
 
 
 def _is_plain(given: tuple[Placement, ...] | None) -> bool:
@@ -42,22 +41,20 @@ def _is_plain(given: tuple[Placement, ...] | None) -> bool:
 
 def _code(coder: BinaryCoder, charts: Charts, most: int, given: Placement) -> Placement:
     rotation = _singles(coder, given.rotation, slots.ROTATION, "rotation")
-    if abs(sum(part * part for part in rotation) - 1) > UNIT_TOLERANCE:
-        raise FormatError(SECTION, "rotation", "a unit quaternion", rotation)
     offset = _singles(coder, given.offset, slots.OFFSET, "offset")
     scale = single(coder, given.scale, slots.SCALE, "scale")
-    if scale <= 0:
-        raise FormatError(SECTION, "scale", "above 0", scale)
     mirrored = flag(coder, given.mirrored, slots.MIRRORED)
-    uv_scale = _singles(coder, given.uv_scale, slots.UV_SCALE, "uv scale")
-    uv_offset = _singles(coder, given.uv_offset, slots.UV_OFFSET, "uv offset")
+    uv_scale = _singles(coder, given.uv_scale, slots.UV_SCALE, "uv_scale")
+    uv_offset = _singles(coder, given.uv_offset, slots.UV_OFFSET, "uv_offset")
     materials = None
     if flag(coder, given.materials is not None, slots.HAS_MATERIALS):
         materials = _materials(coder, charts, most, given.materials)
     w, x, y, z = rotation
     right, up, front = offset
     (su, sv), (u, v) = uv_scale, uv_offset
-    return Placement((w, x, y, z), (right, up, front), scale, mirrored, (su, sv), (u, v), materials)
+    turn, shift = (w, x, y, z), (right, up, front)
+    with located(SECTION, ""):
+        return Placement(turn, shift, scale, mirrored, (su, sv), (u, v), materials)
 
 
 def _singles(coder: BinaryCoder, given: tuple[float, ...], slot: int, name: str) -> list[float]:
@@ -69,7 +66,7 @@ def _materials(
 ) -> Int32Array:
     count = len(charts.materials)
     if count > most:
-        raise FormatError(SECTION, "placement materials", f"at most {most} more", count)
+        raise FormatError(SECTION, "placement_materials", f"at most {most} more", count)
     wanted = [0] * count if given is None else given[charts.given].tolist()
     found = [0]
     for material in wanted:

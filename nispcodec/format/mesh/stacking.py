@@ -47,7 +47,7 @@ class Stacking:
         rank = ranked.index(wanted) if wanted in known else 0
         rank = signed(self._coder, rank, slots.RANK, Context(0))
         if not 0 <= rank < len(ranked):
-            raise FormatError(SECTION, "uv rank", f"0 to {len(ranked) - 1}", rank)
+            raise FormatError(SECTION, "uv_rank", f"0 to {len(ranked) - 1}", rank)
         return ranked[rank]
 
     def beyond(self, sides: list[tuple[Pair, Pair, Pair | None]], wanted: Pair) -> Pair | None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from contextlib import suppress
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -10,7 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from nispcodec.core.errors import FormatError
-from nispcodec.core.mesh_part import MeshPart
+from nispcodec.core.mesh_part import MAX_PLACED_FACES, MeshPart, Placement
 from nispcodec.format.constants import MESH_FACES_PER_BYTE
 from nispcodec.format.mesh import decode, encode
 from tests.format.mesh.parts import box, faces_of, grid, part, parts, vertices_of
@@ -43,7 +44,7 @@ def test_what_was_decoded_encodes_to_the_same_again(made: MeshPart) -> None:
     assert vertices_of(one) == vertices_of(other)
 
 
-@given(st.lists(parts(), max_size=3))
+@given(st.lists(parts(), min_size=1, max_size=3))
 @settings(max_examples=EXAMPLES)
 def test_several_parts(made: list[MeshPart]) -> None:
     found = decode(encode(tuple(made)))
@@ -75,8 +76,26 @@ def test_faces_are_bounded_by_the_bytes() -> None:
 
 
 def test_no_parts() -> None:
-    assert decode(encode(())) == ()
-    assert decode(b"") == ()
+    for data in (encode(()), b""):
+        with pytest.raises(FormatError, match="field parts: expected at least one"):
+            decode(data)
+
+
+def test_placements_and_their_materials_are_bounded() -> None:
+    copies = (Placement(materials=np.zeros(1, np.int32)),) * 4096
+    data = encode((replace(box(), placements=copies),))
+    assert len(decode(data)[0].placements) == 4096
+    one = part(np.eye(3), np.array([[0, 1, 2]]), placements=copies)
+    with pytest.raises(FormatError, match="field placement_materials"):
+        encode((one,) * 32)
+
+
+def test_faces_of_all_copies_are_bounded() -> None:
+    flat = replace(grid(16), placements=(Placement(),) * 4096)
+    assert flat.placed_faces == MAX_PLACED_FACES
+    assert decode(encode((flat,)))[0].placed_faces == MAX_PLACED_FACES
+    with pytest.raises(FormatError, match="field placed_faces"):
+        encode((flat, box()))
 
 
 def test_a_face_that_has_a_vertex_twice_is_refused() -> None:

@@ -41,7 +41,7 @@ def listed(value: Any) -> Any:
     return [listed(each) for each in value] if isinstance(value, list | tuple) else value
 
 
-@given(st.lists(parts(), max_size=2))
+@given(st.lists(parts(), min_size=1, max_size=2))
 @settings(max_examples=30)
 def test_it_reads_what_we_write(made: list[MeshPart]) -> None:
     data = encode(tuple(made))
