@@ -95,7 +95,7 @@ class Copies:
     def weighed(
         held: Triangles, groups: list[Group], covered: BoolArray, fewest_left: int
     ) -> Copies:
-        """Of triangles in the normalized frame, and groups of them that have no weight yet."""
+        """From triangles in the normalized frame, and groups of them that have no weight yet."""
         pieces = [piece.positions for _, piece in _pieces(held, groups)]
         weights = [np.sqrt(sum(each.scale**2 for each in group.placements)) for group in groups]
         sizes = [np.ptp(piece, axis=0).max() for piece in pieces]
