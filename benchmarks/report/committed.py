@@ -98,6 +98,11 @@ RESULTS = (
         (*CORE, "nispcodec/simplify", *FORMAT, *METRICS, *RIVALS),
     ),
     CommittedResult(
+        "copies.json",
+        "benchmarks.studies.copies",
+        (*CORE, "nispcodec/geometry", "nispcodec/simplify", *FORMAT, *METRICS, *RIVALS),
+    ),
+    CommittedResult(
         "pruning_or_quantizing.json",
         "benchmarks.studies.pruning_or_quantizing",
         (*TRAIN, *FORMAT),

@@ -5,7 +5,8 @@
 The rival is coded over a grid of face counts and bits. Of its settings that no other beats in both
 bytes and distance some are taken; its bytes are the fewest of all settings with no larger distance
 and UV error, ours the fewest that `best_for` finds within the same, with copies and without. The
-scene is of our own making, written as GLB and read again, as any asset is.
+scene is of our own making, written as GLB and read again, as any asset is. Both sides leave out the
+faces that are hidden, as an encode finds them.
 """
 
 from __future__ import annotations
@@ -13,10 +14,8 @@ from __future__ import annotations
 import tempfile
 from collections.abc import Iterator
 from contextlib import suppress
-from dataclasses import replace
 from itertools import product
 from pathlib import Path
-from time import perf_counter
 
 import click
 
@@ -30,17 +29,19 @@ from benchmarks.measuring.machine import commit
 from benchmarks.measuring.result_file import write_result
 from benchmarks.studies.mesh_parts import (
     Point,
-    chosen_faces,
     duel,
     geometric_mean,
     normalized,
     places,
-    size,
 )
-from nispcodec.geometry.analysis import normalizing_frame
+from nispcodec.core.arrays import BoolArray
+from nispcodec.core.progress import silent
+from nispcodec.encode.config import FormConfig
+from nispcodec.encode.mesh_form import MeshForm
+from nispcodec.geometry.analysis import Analysis, analyze
+from nispcodec.geometry.shown import shown
 from nispcodec.simplify.config import CopiesConfig, LadderConfig
 from nispcodec.simplify.ladder import Simplifier
-from nispcodec.simplify.triangles import Triangles, distinct_corners
 
 KEPT = (0.5, 0.25, 0.125, 0.0625, 0.044, 0.031, 0.022)
 BITS = ((9, 9), (10, 10), (11, 11), (12, 12))
@@ -49,17 +50,15 @@ ASKED, AIM = 0.5, 0.25
 NONE = CopiesConfig(fewest=2**31)
 
 
-def simplifier_of(source: Source, config: LadderConfig = LadderConfig()) -> Simplifier:
-    """Ours, which also measures the rival."""
-    triangles = Triangles.of(source.mesh, normalizing_frame(source.mesh))
-    chosen = chosen_faces(source)
-    kept = None if chosen is None else chosen[distinct_corners(source.mesh)]
-    return Simplifier.of(triangles, size, config, kept=kept)
+def simplifier_of(analysis: Analysis, copies: CopiesConfig) -> Simplifier:
+    """Ours, as an encode has it; it also measures the rival."""
+    forms = FormConfig(ladder=LadderConfig(copies=copies))
+    return MeshForm(analysis, 0, forms, silent).simplifier
 
 
-def rival_meshes(source: Source) -> Iterator[tuple[str, Corners]]:
-    """Every simplified mesh of the rival, and what it is called."""
-    corners, total = corners_of(source.mesh, chosen_faces(source)), len(source.mesh.faces)
+def rival_meshes(source: Source, chosen: BoolArray) -> Iterator[tuple[str, Corners]]:
+    """Every simplified mesh of the chosen faces (m,) bool, and what it is called."""
+    corners, total = corners_of(source.mesh, chosen), len(source.mesh.faces)
     yield "all", corners
     for kept in (kept for kept in KEPT if kept * total > FEWEST):
         # None left is no setting of the rival.
@@ -67,10 +66,10 @@ def rival_meshes(source: Source) -> Iterator[tuple[str, Corners]]:
             yield f"subset {kept}", simplified(corners, round(kept * total))
 
 
-def rival_points(source: Source, ours: Simplifier) -> list[Point]:
+def rival_points(source: Source, chosen: BoolArray, ours: Simplifier) -> list[Point]:
     """Bytes and errors of every setting of the rival."""
     points = []
-    for (name, corners), (qp, qt) in product(rival_meshes(source), BITS):
+    for (name, corners), (qp, qt) in product(rival_meshes(source, chosen), BITS):
         data = draco.encode_corners(corners, {"qp": qp, "qt": qt})
         errors = ours.original.errors(normalized(source, draco.decode(data, source)))
         measured = {"distance": errors.distance, "uv": errors.uv, "uv_median": errors.uv_median}
@@ -87,11 +86,9 @@ def main(across: int, output: Path) -> None:
         path = Path(folder) / "pieces.glb"
         scene(across).save(path)
         source = Source(path)
-        start = perf_counter()
-        ours = simplifier_of(source)
-        seconds = round(perf_counter() - start, 2)
-        whole = simplifier_of(source, replace(LadderConfig(), copies=NONE))
-        points = rival_points(source, ours)
+        analysis = analyze(source.mesh)
+        ours, whole = simplifier_of(analysis, CopiesConfig()), simplifier_of(analysis, NONE)
+        points = rival_points(source, shown(analysis).faces, ours)
     rows = []
     for place in places(points):
         with_copies, without = duel(points, place, ours), duel(points, place, whole)
@@ -103,7 +100,6 @@ def main(across: int, output: Path) -> None:
         "faces": len(source.mesh.faces),
         "held_faces": len(ours.source.triangles),
         "placements": [len(group.placements) for group in ours.copies.groups],
-        "seconds_to_prepare": seconds,
         "rows": rows,
         "ratio": ratio,
         "asked": ASKED,

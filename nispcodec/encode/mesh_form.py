@@ -21,7 +21,7 @@ from nispcodec.geometry.shown import shown
 from nispcodec.simplify.errors import Errors
 from nispcodec.simplify.ladder import Candidate, Simplifier
 from nispcodec.simplify.search import best_for
-from nispcodec.simplify.triangles import Triangles
+from nispcodec.simplify.triangles import Triangles, distinct_corners
 
 
 def coded_bytes(parts: tuple[MeshPart, ...]) -> int:
@@ -46,8 +46,9 @@ class MeshForm:
     def simplifier(self) -> Simplifier:
         """The maker of candidates, from the faces that can be seen."""
         found = shown(self._analysis)
-        triangles = Triangles.of(found.mesh, self._analysis.frame, found.faces, found.sheet)
-        return Simplifier.of(triangles, coded_bytes, self._config.ladder, self._seed)
+        triangles = Triangles.of(found.mesh, self._analysis.frame, None, found.sheet)
+        kept = found.faces[distinct_corners(found.mesh)]
+        return Simplifier.of_kept(triangles, kept, coded_bytes, self._config.ladder, self._seed)
 
     def errors(self, document: Document) -> Errors:
         """How far the surface that a document decodes to is off."""

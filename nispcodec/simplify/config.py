@@ -77,7 +77,9 @@ class FitConfig:
 class CopiesConfig:
     """Which bodies are held once.
 
-    fewest        faces of such a body: fewer take no more bytes than a placement does
+    fewest        faces of such a body: a placement takes 30 bytes, and of leaves of 72 faces so few
+                  are left in coarse candidates that these took half the bytes of their placements
+    fewest_left   faces that simplifying must leave of it, else its copies are faces like others
     tolerance     largest distance of a copy's corners from where a placement has them, normalized
                   frame: below what rounding moves
     uv_tolerance  the same of UVs
@@ -85,7 +87,8 @@ class CopiesConfig:
     most_tried    bodies that one is compared with: where many differ, time
     """
 
-    fewest: int = 24
+    fewest: int = 100
+    fewest_left: int = 8
     tolerance: float = 1e-4
     uv_tolerance: float = 1e-4
     alike: float = 0.02

@@ -17,7 +17,6 @@ from nispcodec.simplify.copies import Copies
 from nispcodec.simplify.copy_search import copies_of
 from nispcodec.simplify.errors import Errors, Original, mesh_of
 from nispcodec.simplify.position_fit import fitted_positions
-from nispcodec.simplify.quantize import Grid
 from nispcodec.simplify.scene import scene
 from nispcodec.simplify.source import Source
 from nispcodec.simplify.triangles import Triangles
@@ -78,10 +77,30 @@ class Simplifier:
         The others, such as those hidden in bodies, may be found where they are, but are not missed.
         Raises MeshError where no face has an area.
         """
-        shown = triangles if kept is None else triangles.only(kept)
-        copies = copies_of(shown, config.copies)
+        copies = copies_of(triangles, config.copies, kept)
+        return Simplifier._of(copies, triangles, kept, coded, config, seed)
+
+    @staticmethod
+    def of_kept(
+        triangles: Triangles, kept: BoolArray, coded: Coded, config: LadderConfig, seed: int
+    ) -> Simplifier:
+        """As `of`, but others than the kept faces are found only where copies have them."""
+        copies = copies_of(triangles, config.copies, kept)
+        there, kept = triangles.only(copies.covered), kept[copies.covered]
+        return Simplifier._of(copies, there, kept, coded, config, seed)
+
+    @staticmethod
+    def _of(
+        copies: Copies,
+        triangles: Triangles,
+        kept: BoolArray | None,
+        coded: Coded,
+        config: LadderConfig,
+        seed: int,
+    ) -> Simplifier:
         source = Source(copies.triangles)
-        tree = source.tree if source.triangles is triangles else Tree(triangles.corners)
+        same = len(source.triangles) == len(triangles)
+        tree = source.tree if same else Tree(triangles.corners)
         original = Original.of(triangles, tree, config.samples, seed, kept)
         return Simplifier(copies, source, original, coded, config, seed)
 
@@ -100,8 +119,7 @@ class Simplifier:
         triangles = self.fitted(faces)
         if faces < len(self.source.triangles):
             # UVs are fitted to the places that rounding leaves.
-            places = Grid.of(triangles.positions, bits).rounded(triangles.positions)
-            placed = replace(triangles, positions=places)
+            placed = self.copies.rounded(triangles, bits)
             uvs = fitted_uvs(self.source, placed, self.config.fit, self.seed).uvs
             triangles = replace(triangles, uvs=uvs)
         parts = self.copies.parts(triangles, bits, uv_bits, self.config.crease_angle)

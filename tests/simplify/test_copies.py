@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -15,7 +17,7 @@ from nispcodec.simplify.config import CopiesConfig
 from nispcodec.simplify.copies import Copies
 from nispcodec.simplify.copy_search import copies_of
 from nispcodec.simplify.quantize import quantized
-from tests.simplify.meshes import ball, simplifier, triangles_of
+from tests.simplify.meshes import area, ball, simplifier, triangles_of
 from tests.simplify.scenes import PLACES, copied, pebble
 
 SCENE = triangles_of(copied(pebble()))
@@ -80,3 +82,28 @@ def test_candidates_are_measured_against_all_copies() -> None:
     assert fewer.errors.distance < 0.02
     assert fewer.size < whole.size
     assert whole.faces == len(SCENE) // 4
+
+
+def test_copies_of_which_few_faces_are_left_are_faces_like_others() -> None:
+    few = replace(COPIES, fewest_left=len(COPIES.triangles) + 1)
+    (part,) = few.parts(COPIES.triangles, BITS, BITS)
+    (held,) = COPIES.parts(COPIES.triangles, BITS, BITS)
+    assert len(part.faces) == len(SCENE)
+    assert len(part.placements) == 1
+    assert set(part.chart_materials.tolist()) == {0, 1, 2, 3}
+    points = points_about()
+    ours, theirs = asked((part,), points).sdf(points), asked((held,), points).sdf(points)
+    np.testing.assert_allclose(ours, theirs, atol=2 * part.step)
+
+
+def test_bodies_are_simplified_with_the_area_of_all_their_copies() -> None:
+    assert area(COPIES.triangles) == pytest.approx(area(SCENE), rel=1e-6)
+    home = COPIES.groups[0].home(COPIES.triangles)
+    assert area(home) == pytest.approx(area(SCENE) / COPIES.groups[0].weight ** 2, rel=1e-6)
+
+
+def test_positions_are_rounded_as_parts_are() -> None:
+    rounded = COPIES.rounded(COPIES.triangles, BITS)
+    (part,) = COPIES.parts(COPIES.triangles, BITS, BITS)
+    home = COPIES.groups[0].home(rounded)
+    np.testing.assert_allclose(part.normalized()[part.faces], home.corners, atol=1e-6)

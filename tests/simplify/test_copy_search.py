@@ -122,3 +122,33 @@ def test_faces_that_begin_with_another_corner_are_the_same() -> None:
     faces, uv_faces = pair.faces.copy(), pair.uv_faces.copy()
     faces[half:], uv_faces[half:] = faces[half:][:, [1, 2, 0]], uv_faces[half:][:, [1, 2, 0]]
     assert count(found(replace(pair, faces=faces, uv_faces=uv_faces))) == [2]
+
+
+def test_what_is_hidden_of_one_copy_alone_does_no_harm() -> None:
+    triangles = triangles_of(copied(STONE))
+    kept = np.ones(len(triangles), np.bool_)
+    kept[:7] = kept[-9:] = False
+    copies = copies_of(triangles, CONFIG, kept)
+    assert count(copies) == [4]
+    assert len(copies.triangles) == len(STONE.faces)
+    assert copies.covered.all()
+
+
+def test_what_is_hidden_of_every_copy_is_not_held() -> None:
+    triangles = triangles_of(copied(STONE))
+    faces = len(STONE.faces)
+    hidden = np.tile(np.arange(faces) < 7, 4)
+    # The third one is a reflection of the same faces in the same order.
+    copies = copies_of(triangles, CONFIG, ~hidden)
+    assert len(copies.triangles) == faces - 7
+    assert (copies.covered == ~hidden).all()
+
+
+def test_halves_that_lack_each_others_faces_stay_two() -> None:
+    triangles = triangles_of(copied(STONE, MOVED))
+    half = np.arange(len(STONE.faces)) < len(STONE.faces) // 2
+    kept = np.concatenate([half, ~half])
+    copies = copies_of(triangles, CONFIG, kept)
+    assert count(copies) == [1]
+    assert (copies.covered == kept).all()
+    assert len(copies.triangles) == kept.sum()
