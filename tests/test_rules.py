@@ -227,7 +227,6 @@ LARGE = 30
 # can only be said of the whole that it is a part of, or it is a table that others are held to.
 TESTED_ELSEWHERE = {
     # What a file may hold: refused, or brought back, as bytes.
-    "core/document.py": "format/test_malformed.py",
     "core/network.py": "format/test_malformed.py",
     "format/container.py": "format/test_malformed.py",
     "format/document.py": "format/test_round_trip.py",

@@ -118,6 +118,7 @@ class FormConfig:
     surely_smaller   share of the networks' bytes from which down triangles are taken unseen: the
                      estimate of what a fit will reach may be that far off
     surely_larger    share of them from which on networks are
+    measured_faces   of the surface of a field at most, when its errors are measured: seconds
     fitted           share of the probe's error that an SDF of the preset `balanced` is left with
     negligible       distances below this are as good as none ...
     negligible_uv    ... and UV errors below this
@@ -132,6 +133,7 @@ class FormConfig:
     coarseness: tuple[float, ...] = (4.0, 2.0, 1.0)
     surely_smaller: float = 0.5
     surely_larger: float = 1.4
+    measured_faces: float = 600_000
     fitted: float = 0.35
     negligible: float = 1e-4
     negligible_uv: float = 5e-4

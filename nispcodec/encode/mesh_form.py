@@ -10,11 +10,11 @@ from math import log
 
 import numpy as np
 
-from nispcodec.core.document import Document
+from nispcodec.core.document import Document, Field
 from nispcodec.core.mesh_part import MeshPart
 from nispcodec.core.progress import Listener, Progress
 from nispcodec.encode.config import FormConfig
-from nispcodec.extract.meshing import textured_mesh
+from nispcodec.extract.meshing import default_resolution, expected_faces, textured_mesh
 from nispcodec.format import mesh
 from nispcodec.geometry.analysis import Analysis
 from nispcodec.geometry.shown import shown
@@ -53,9 +53,17 @@ class MeshForm:
     def errors(self, document: Document) -> Errors:
         """How far the surface that a document decodes to is off."""
         self._progress(Progress(stage="surface"))
-        mesh, _ = textured_mesh(document)
+        mesh, _ = textured_mesh(document, self._resolution(document.field))
         positions = document.frame.to_normalized(mesh.positions)
         return self.simplifier.original.errors(replace(mesh, positions=positions))
+
+    def _resolution(self, field: Field | None) -> int | None:
+        """Cells a side as a decode has them, or fewer where that would take long to measure."""
+        if field is None:
+            return None
+        cells = default_resolution(field.sdf, field.half_thickness)
+        faces = expected_faces(field.sdf, cells)
+        return round(cells * min(1.0, math.sqrt(self._config.measured_faces / max(faces, 1))))
 
     def estimate(self, distance: float, enough: float) -> float:
         """About how many bytes the asset takes at a mean distance; `enough` or more is enough.
