@@ -133,7 +133,7 @@ class FormConfig:
     coarseness: tuple[float, ...] = (4.0, 2.0, 1.0)
     surely_smaller: float = 0.5
     surely_larger: float = 1.4
-    measured_faces: float = 600_000
+    measured_faces: float = 150_000
     fitted: float = 0.35
     negligible: float = 1e-4
     negligible_uv: float = 5e-4

@@ -70,6 +70,7 @@ def _encoded(
     progress(Progress(stage="samples"))
     sampler = Sampler(analysis, config.seed, tuning.sampling_of(config.preset))
     sets = (paper_training_sets if published else training_sets)(sampler)
+    progress(Progress(stage="fit"))
     networks = fit(
         analysis, sets, config, tuning.training, engine, of_networks, choice.wants_field, progress
     )

@@ -31,7 +31,7 @@ class StageSeconds:
             "triangles": 1.0,
         }
     )
-    after: float = 2.0
+    after: float = 0.3
     steps: float = 2000.0
     paper: float = 1200.0
     rounding: float = 0.93
@@ -69,6 +69,8 @@ class _Whole:
     def _share(self, update: Progress) -> float:
         if update.network:
             return _within(self._fit_span, self._fit.share(update))
+        if update.stage == "surface":
+            return self._fit_span[1]
         done = update.step / update.steps if update.steps else 0.0
         return _within(self._spans[update.stage], done) if update.stage in self._spans else 0.0
 

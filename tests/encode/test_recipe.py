@@ -133,7 +133,7 @@ def test_stages_and_networks_are_reported() -> None:
     assert {progress.network for progress in seen} == {"", "sdf", "chart", "uv"}
     stages = list(dict.fromkeys(progress.stage for progress in seen if not progress.network))
     assert stages[:4] == ["textures", "charts and hidden walls", "samples", "fit"]
-    assert stages[4:] == ["probe how much there is to learn"]
+    assert stages[4:] == ["probe how much there is to learn", "surface"]
 
 
 def test_a_device_that_is_not_there_is_an_error_before_any_work() -> None:
