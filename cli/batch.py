@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from nispcodec.catalogue.plan import Asset, Problem, Shard
 
 ENCODE_NAMES = (
-    "preset", "target_size", "target_error", "seed", "device", "unwrap", "pad_textures",
+    "preset", "geometry", "target_size", "target_error", "seed", "device", "unwrap", "pad_textures",
     "texture_format", "texture_quality", "prune", "prune_rate", "prune_rounds", "no_textures",
 )  # fmt: skip
 """Options that are those of `nisp encode`; its --engine is --backend here, its --threads --jobs."""

@@ -38,11 +38,12 @@ RULES: dict[str, tuple[set[str], set[str]]] = {
     "procedural": ({"numpy", "PIL"}, {"core"}),
     "encode": (
         {"numpy"},
-        {"core", "geometry", "dataset", "train", "format", "infer", "model", "edit"},
+        {"core", "geometry", "dataset", "simplify", "train", "format", "infer", "extract"}
+        | {"model", "edit"},
     ),
     # A driver of everything else, by what is public of it.
     "catalogue": (
-        {"fsspec", "ray", "threadpoolctl"},
+        {"fsspec", "ray"},
         {
             "core",
             "io",
@@ -135,6 +136,8 @@ STRUCTURAL = {
     "nispcodec/geometry/z_order.py BITS",
     "nispcodec/simplify/closest.py FLAT",
     "nispcodec/simplify/collapse.py PRUNE",
+    "nispcodec/simplify/copy_search.py KEPT",
+    "nispcodec/simplify/copy_search.py TURNED",
 }
 
 

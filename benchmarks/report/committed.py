@@ -98,12 +98,16 @@ RESULTS = (
         (*CORE, "nispcodec/simplify", *FORMAT, *METRICS, *RIVALS),
     ),
     CommittedResult(
+        "copies.json",
+        "benchmarks.studies.copies",
+        (*CORE, "nispcodec/geometry", "nispcodec/simplify", *FORMAT, *METRICS, *RIVALS),
+    ),
+    CommittedResult(
         "pruning_or_quantizing.json",
         "benchmarks.studies.pruning_or_quantizing",
         (*TRAIN, *FORMAT),
     ),
     CommittedResult("rounding_loss.json", "benchmarks.studies.rounding_loss", ROUND_TRIP),
-    CommittedResult("web_decoder.json", "benchmarks.studies.web_decoder", ("web",)),
     CommittedResult("training_step.json", "benchmarks.studies.training_step", ("nispcodec/train",)),
     CommittedResult(
         "preparation_time.json",
@@ -111,4 +115,5 @@ RESULTS = (
         (*CORE, "nispcodec/geometry", "nispcodec/dataset"),
     ),
     CommittedResult("random_assets.json", "benchmarks.studies.random_assets", ENCODE),
+    CommittedResult("web_decoder.json", "benchmarks.studies.web_decoder", ("web",)),
 )

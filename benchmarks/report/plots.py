@@ -24,6 +24,7 @@ COLORS = {
     "gltfpack": "#7b4fa3",
     "draco": "#2a7f3f",
     "simplified_draco": "#1f5fbf",
+    "simplified_update_draco": "#4f9fe0",
     "nisp": "#d62f2f",
     "nisp_paper": "#e8953a",
 }

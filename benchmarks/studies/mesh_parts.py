@@ -53,9 +53,9 @@ RESULTS = Path("benchmarks/results/mesh_parts.json")
 Point = dict[str, Any]
 
 
-def size(part: MeshPart) -> int:
-    """The bytes of one part, as the section of a file."""
-    return len(import_module("nispcodec.format.mesh").encode((part,)))
+def size(parts: tuple[MeshPart, ...]) -> int:
+    """The bytes of parts, as the section of a file."""
+    return len(import_module("nispcodec.format.mesh").encode(parts))
 
 
 def chosen_faces(source: Source) -> BoolArray | None:

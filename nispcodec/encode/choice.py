@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 from nispcodec.core.document import Document
 from nispcodec.core.errors import FitError, NispError
 from nispcodec.core.mesh_part import MeshPart
-from nispcodec.encode.config import EncodeConfig, FormConfig
+from nispcodec.encode.config import EncodeConfig, Tuning
 from nispcodec.encode.mesh_form import MeshForm
 from nispcodec.format import inspect, pack
 from nispcodec.format.constants import TXTR
@@ -30,13 +30,14 @@ class Chosen:
 
 
 class Choice:
-    """Of one asset: asked before its networks are fitted, when their size is known, and after.
+    """The form of one asset: asked before a fit, when the size of networks is known, and after it.
 
     With `geometry` "auto", the form that is estimated to be clearly larger is not made at all.
     """
 
-    def __init__(self, form: MeshForm, config: EncodeConfig, forms: FormConfig) -> None:
-        self._form, self._config, self._forms = form, config, forms
+    def __init__(self, form: MeshForm, config: EncodeConfig, tuning: Tuning) -> None:
+        self._form, self._config, self._tuning = form, config, tuning
+        self._forms = tuning.forms
         self._estimate, self._field_bytes = 0.0, 0.0
 
     def wants_field(self, size: float, probe_error: float) -> bool:
@@ -60,7 +61,7 @@ class Choice:
         found = self._rival(size, errors)
         if found is None:
             return Chosen(field, errors)
-        meshes = replace(field, field=None, meshes=(found.part,))
+        meshes = replace(field, field=None, meshes=found.parts)
         other = own_bytes(meshes)
         if self._config.target_size and found.errors.distance < errors.distance:
             return Chosen(meshes, found.errors, size)
@@ -68,14 +69,14 @@ class Choice:
             return Chosen(meshes, found.errors, size)
         return Chosen(field, errors, other)
 
-    def triangles(self, document: Callable[[MeshPart], Document]) -> Chosen:
+    def triangles(self, document: Callable[[tuple[MeshPart, ...]], Document]) -> Chosen:
         """The asset as triangles, as near as the preset or the target asks.
 
         Raises FitError for a target error that they miss, NispError for a target size that is too
         small.
         """
         found = self._wanted(document)
-        return Chosen(document(found.part), found.errors, self._field_bytes)
+        return Chosen(document(found.parts), found.errors, self._field_bytes)
 
     def _rival(self, size: int, errors: Errors) -> Candidate | None:
         """Triangles to set against a fitted field: no worse, or of no more bytes."""
@@ -87,8 +88,8 @@ class Choice:
             return None
         return self._form.best(errors.distance, size)
 
-    def _wanted(self, document: Callable[[MeshPart], Document]) -> Candidate:
-        config, forms = self._config, self._forms
+    def _wanted(self, document: Callable[[tuple[MeshPart, ...]], Document]) -> Candidate:
+        config = self._config
         if config.target_error:
             found = self._form.within(config.target_error, math.inf)
             if found is None:
@@ -96,11 +97,11 @@ class Choice:
                     f"target error: expected {config.target_error:g}, found no mesh as near"
                 )
             return found
-        nearest = forms.most_distance[config.preset]
+        nearest = self._tuning.training.budgets[config.preset].mesh
         if not config.target_size:
             return self._form.best(nearest, self._field_bytes or math.inf)
         least = self._form.of_size(0.0)
-        besides = own_bytes(document(least.part)) - least.size
+        besides = own_bytes(document(least.parts)) - least.size
         found = self._form.of_size(config.target_size - besides)
         if besides + found.size > config.target_size:
             raise NispError(
@@ -116,6 +117,6 @@ class Choice:
 
 
 def own_bytes(document: Document) -> int:
-    """Of a file, without its images."""
+    """Bytes of a file, without its images."""
     data = pack(document)
     return len(data) - sum(each.stored_length for each in inspect(data) if each.code == TXTR)

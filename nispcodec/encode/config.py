@@ -119,7 +119,6 @@ class FormConfig:
                      estimate of what a fit will reach may be that far off
     surely_larger    share of them from which on networks are
     fitted           share of the probe's error that an SDF of the preset `balanced` is left with
-    most_distance    by preset: a mesh is not made coarser, however small it would be
     negligible       distances below this are as good as none ...
     negligible_uv    ... and UV errors below this
     distance_weight  of the logarithm of the distance against that of the bytes: halving it is worth
@@ -134,9 +133,6 @@ class FormConfig:
     surely_smaller: float = 0.5
     surely_larger: float = 1.4
     fitted: float = 0.35
-    most_distance: Mapping[str, float] = field(
-        default_factory=lambda: {"fast": 1e-3, "balanced": 6e-4, "best": 3e-4}
-    )
     negligible: float = 1e-4
     negligible_uv: float = 5e-4
     distance_weight: float = 0.4

@@ -21,16 +21,16 @@ from nispcodec.geometry.shown import shown
 from nispcodec.simplify.errors import Errors
 from nispcodec.simplify.ladder import Candidate, Simplifier
 from nispcodec.simplify.search import best_for
-from nispcodec.simplify.triangles import Triangles
+from nispcodec.simplify.triangles import Triangles, distinct_corners
 
 
-def coded_bytes(part: MeshPart) -> int:
-    """What a part adds to a file."""
-    return len(mesh.encode((part,)))
+def coded_bytes(parts: tuple[MeshPart, ...]) -> int:
+    """Bytes that parts add to a file."""
+    return len(mesh.encode(parts))
 
 
 class MeshForm:
-    """The faces of an asset that can be seen, as candidates for one mesh part.
+    """The faces of an asset that can be seen, as candidates for mesh parts.
 
     Distances are means in the normalized frame, UV errors means in the asset's UV.
     """
@@ -44,13 +44,14 @@ class MeshForm:
 
     @cached_property
     def simplifier(self) -> Simplifier:
-        """Of the faces that can be seen."""
+        """The maker of candidates, from the faces that can be seen."""
         found = shown(self._analysis)
-        triangles = Triangles.of(found.mesh, self._analysis.frame, found.faces, found.sheet)
-        return Simplifier.of(triangles, coded_bytes, self._config.ladder, self._seed)
+        triangles = Triangles.of(found.mesh, self._analysis.frame, None, found.sheet)
+        kept = found.faces[distinct_corners(found.mesh)]
+        return Simplifier.of_kept(triangles, kept, coded_bytes, self._config.ladder, self._seed)
 
     def errors(self, document: Document) -> Errors:
-        """What the surface that a document decodes to is off."""
+        """How far the surface that a document decodes to is off."""
         self._progress(Progress(stage="surface"))
         mesh, _ = textured_mesh(document)
         positions = document.frame.to_normalized(mesh.positions)

@@ -56,13 +56,13 @@ def _encoded(
         progress(Progress(stage="charts and hidden walls", warning=f"{mesh.name}: {warning}"))
     frame = short_frame(analysis.frame, tuning.negligible)
     form = MeshForm(analysis, config.seed, tuning.forms, progress)
-    choice = Choice(form, config, tuning.forms)
+    choice = Choice(form, config, tuning)
 
     def of_networks(networks: Mapping[str, Network]) -> Document:
         return Document(frame, materials, textures, _field(networks, analysis, tuning))
 
-    def of_triangles(part: MeshPart) -> Document:
-        return Document(frame, materials, textures, meshes=(part,))
+    def of_triangles(parts: tuple[MeshPart, ...]) -> Document:
+        return Document(frame, materials, textures, meshes=parts)
 
     if config.geometry == "mesh":
         chosen = choice.triangles(of_triangles)

@@ -10,7 +10,7 @@ from nispcodec.core.arrays import Int32Array
 from nispcodec.core.asset import TexturedMesh
 from nispcodec.core.document import Document
 from nispcodec.core.mesh_part import MeshPart, Placement
-from nispcodec.infer.placements import placed_points
+from nispcodec.core.placing import placed_points
 
 
 def joined(document: Document, field: TexturedMesh | None) -> TexturedMesh:

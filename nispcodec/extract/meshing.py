@@ -166,7 +166,8 @@ def _dressed(
     return TexturedMesh(
         positions=document.frame.to_world(surface.positions),
         faces=surface.faces,
-        uvs=uvs.astype(np.float64),
+        # What is not finite counts as 0, as where a texture is asked.
+        uvs=np.nan_to_num(uvs.astype(np.float64), posinf=0.0, neginf=0.0),
         uv_faces=uv_faces,
         face_materials=table.materials[charts].astype(np.int32),
         materials=document.materials,

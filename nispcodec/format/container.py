@@ -28,6 +28,9 @@ from nispcodec.format.constants import (
 _HEADER = struct.Struct("<8sBBHI")
 _ENTRY = struct.Struct("<4sBIIII")
 _CODE = re.compile(rb"[A-Z0-9]{4}")
+_DESCRIPTOR = 4
+"""The byte of a zstd frame that says what is in its header (RFC 8878, 3.1.1.1.1)."""
+_UNWANTED = 0b111
 _ZSTD_LEVEL = 19
 _ZSTD_LEVEL_LARGE = 3
 _LARGE = 2**20
@@ -106,6 +109,9 @@ def content(entry: Entry) -> memoryview:
         return entry.payload
     try:
         declared = zstandard.get_frame_parameters(entry.payload).content_size
+        if entry.payload[_DESCRIPTOR] & _UNWANTED:
+            expected = "a zstd frame without dictionary ID and checksum"
+            raise FormatError(entry.code, "payload", expected, bytes(entry.payload[:5]))
         if declared != entry.decoded_length:
             raise FormatError(entry.code, "content_size", entry.decoded_length, declared)
         unpacked = zstandard.ZstdDecompressor().decompress(

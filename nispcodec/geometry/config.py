@@ -44,6 +44,11 @@ class SolidConfig:
     leak              the same of a sheet whose rim hangs free ...
     hanging           ... as such a share of it is away from all others: panels of a room meet
     rays              that ask for it, of each opening and sheet
+    sight_rays        about so many from all faces inside other bodies: one that gets away from a
+                      face says that it is seen ...
+    few_rays          ... but no fewer of each face ...
+    many_rays         ... and no more
+    sight_offset      how far off the face they begin
     open_share        a body whose exposed openings have this share of its area is open
     undecided         an opening is exposed where the winding number is so near to a half ...
     plugged_gap       ... and the mesh further away than this
@@ -75,6 +80,10 @@ class SolidConfig:
     leak: float = 0.03
     hanging: float = 0.95
     rays: int = 128
+    sight_rays: int = 400_000
+    few_rays: int = 32
+    many_rays: int = 1024
+    sight_offset: float = 1e-5
     open_share: float = 0.25
     undecided: float = 0.2
     plugged_gap: float = 0.02

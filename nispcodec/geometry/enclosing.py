@@ -10,6 +10,7 @@ import numpy as np
 from nispcodec.core.arrays import BoolArray, Float64Array, IntArray
 from nispcodec.geometry.bodies import Bodies
 from nispcodec.geometry.config import SolidConfig
+from nispcodec.geometry.rays import leaves, ways_beside
 from nispcodec.geometry.triangles import area, normals
 from nispcodec.geometry.winding import Winding
 
@@ -141,7 +142,7 @@ def _seen_out(
     face = order[np.minimum(np.searchsorted(weight, at.ravel(), side="right"), len(order) - 1)]
     facing = side[face, None] * normals(shown[face])
     start = shown[face].mean(axis=1) + config.probe_offset * facing
-    escaped = _leaves(others, start, _beside(facing, random))
+    escaped = leaves(others, start, ways_beside(facing, random))
     found = np.zeros(count)
     found[asked] = escaped.reshape(len(asked), -1).mean(axis=1)
     return found
@@ -152,29 +153,9 @@ def _escaping(
 ) -> Float64Array:
     """The share (n,) of rays from points (n, 3), about the way (n, 3) they face, that get away."""
     random = np.random.default_rng(0)
-    ways = _beside(np.repeat(facing, config.rays, axis=0), random)
-    escaped = _leaves(corners, np.repeat(points, config.rays, axis=0), ways)
+    ways = ways_beside(np.repeat(facing, config.rays, axis=0), random)
+    escaped = leaves(corners, np.repeat(points, config.rays, axis=0), ways)
     return escaped.reshape(len(points), config.rays).mean(axis=1)
-
-
-def _beside(facing: Float64Array, random: np.random.Generator) -> Float64Array:
-    """Random directions (n, 3) about unit vectors, by the cosine to them."""
-    way = random.normal(size=facing.shape)
-    way = facing + way / np.linalg.norm(way, axis=1, keepdims=True)
-    return way / np.maximum(np.linalg.norm(way, axis=1, keepdims=True), TINY)
-
-
-def _leaves(corners: Float64Array, points: Float64Array, ways: Float64Array) -> BoolArray:
-    """Which rays (n,) meet none of the faces (m, 3, 3)."""
-    if not len(points):
-        return np.zeros(0, dtype=bool)
-    tree = igl.AABB()
-    vertices = np.ascontiguousarray(corners.reshape(-1, 3))
-    faces = np.arange(3 * len(corners), dtype=np.int64).reshape(-1, 3)
-    tree.init(vertices, faces)
-    hit = tree.intersect_ray_first(vertices, faces, points, ways)[0]
-    missed: BoolArray = np.asarray(hit).reshape(-1) < 0
-    return missed
 
 
 def _gap(corners: Float64Array, points: Float64Array) -> Float64Array:

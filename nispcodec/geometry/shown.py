@@ -6,10 +6,12 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from nispcodec.core.arrays import BoolArray
+from nispcodec.core.arrays import BoolArray, Float64Array, Int64Array
 from nispcodec.core.asset import TexturedMesh
 from nispcodec.core.connectivity import connected_faces
 from nispcodec.geometry.analysis import Analysis
+from nispcodec.geometry.config import SolidConfig
+from nispcodec.geometry.rays import leaves, ways_beside
 from nispcodec.geometry.triangles import area, normals
 from nispcodec.geometry.welding import welded
 
@@ -19,7 +21,8 @@ class Shown:
     """An asset's mesh, world frame, and which of its faces a file has to hold.
 
     mesh   the asset's, faces wound the wrong way within their body turned
-    faces  (m,) bool: not hidden inside other bodies
+    faces  (m,) bool: what is not hidden, or is inside another body and seen for all that, through
+           an opening of it: no signed distance can hold those, but triangles can
     sheet  (m,) bool: open surfaces, which have no inside
     """
 
@@ -29,8 +32,8 @@ class Shown:
 
 
 def shown(analysis: Analysis) -> Shown:
-    """What an analysis found of the faces: the pieces of its solid tell."""
-    mesh, solid = analysis.mesh, analysis.solid
+    """The faces as an analysis has them: the pieces of its solid tell."""
+    mesh, solid, config = analysis.mesh, analysis.solid, analysis.config.solid
     count = len(mesh.faces)
     own = normals(mesh.corners)[solid.parents]
     against = np.einsum("nk,nk->n", own, solid.normals) < 0
@@ -43,7 +46,22 @@ def shown(analysis: Analysis) -> Shown:
         uv_faces=np.where(turned[:, None], mesh.uv_faces[:, ::-1], mesh.uv_faces),
     )
     faces = _any(solid.parents, count)
+    hidden = np.flatnonzero(~faces)
+    faces[hidden] = _seen(analysis.frame.to_normalized(mesh.corners), hidden, config)
     return Shown(flipped, faces, _by_body(flipped, faces, sheet & ~walls))
+
+
+def _seen(corners: Float64Array, faces: Int64Array, config: SolidConfig) -> BoolArray:
+    """Which of some faces (k,) of a mesh (m, 3, 3) a ray from a random point of them leaves."""
+    random = np.random.default_rng(0)
+    rays = min(max(config.sight_rays // max(len(faces), 1), config.few_rays), config.many_rays)
+    asked = np.repeat(corners[faces], rays, axis=0)
+    weights = random.dirichlet(np.ones(3), len(asked))
+    side = np.where(random.random(len(asked)) < 0.5, 1.0, -1.0)[:, None]
+    facing = side * normals(asked)
+    start = np.einsum("nk,nkd->nd", weights, asked) + config.sight_offset * facing
+    free = leaves(corners, start, ways_beside(facing, random))
+    return np.asarray(free.reshape(len(faces), rays).any(axis=1))
 
 
 def _by_body(mesh: TexturedMesh, faces: BoolArray, sheet: BoolArray) -> BoolArray:

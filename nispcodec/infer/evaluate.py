@@ -21,6 +21,8 @@ from nispcodec.infer.parallel import parallel_for
 # calls than they save, and threads wait for each other at every call.
 CACHE = 1 << 20
 SMALLEST = 64
+# Numbers that a block gives at most, 16 MB: a file may have 65,535 charts.
+MOST_OUTPUTS = 1 << 22
 
 
 def evaluate(
@@ -277,8 +279,8 @@ def _in_blocks(run: Callable[[slice], None], spec: NetworkSpec, count: int) -> N
 
 
 def block_size(spec: NetworkSpec) -> int:
-    """How many points are evaluated at a time."""
-    return max(CACHE // (8 * max(spec.hidden)), SMALLEST)
+    """How many points are evaluated at a time: fewer where a network has thousands of outputs."""
+    return min(max(CACHE // (8 * max(spec.hidden)), SMALLEST), max(MOST_OUTPUTS // spec.outputs, 1))
 
 
 def _checked_charts(spec: NetworkSpec, count: int, charts: IntArray | None) -> Int32Array | None:

@@ -58,6 +58,11 @@ class PlacedMeshes:
         self._normals = SurfaceNormals(self.triangles.corners)
 
     @property
+    def chart_count(self) -> int:
+        """How many charts there are, those of every copy."""
+        return len(self.triangles.chart_materials)
+
+    @property
     def chart_materials(self) -> Int32Array:
         """(k,) int32: the material of each chart, those of the first part's first copy first."""
         return self.triangles.chart_materials
@@ -145,8 +150,8 @@ class PlacedMeshes:
         )
         return np.where((before & ~behind)[:, None], -normals, normals)
 
-    def charts(self, points: FloatArray) -> Int32Array:
-        """(n,) int32: the chart of the closest triangle."""
+    def charts(self, points: FloatArray, seen: bool = False) -> Int32Array:
+        """(n,) int32: the chart of the closest triangle. A mesh has none but `seen` ones."""
         if not len(self.triangles.charts):
             return np.zeros(len(points), np.int32)
         return self.triangles.charts[self._search.closest(points)[0]]
@@ -160,6 +165,10 @@ class PlacedMeshes:
         if not len(self.triangles.uvs):
             return np.zeros((len(points), 2), np.float32)
         return _mixed(found.barycentric, self.triangles.uvs[found.face]).astype(np.float32)
+
+    def project(self, points: FloatArray) -> Float32Array:
+        """(n, 3) float32: the closest points."""
+        return self.closest(points).point.astype(np.float32)
 
 
 def _mixed(weights: Float64Array, corners: Float64Array) -> Float64Array:

@@ -11,7 +11,7 @@ import numpy as np
 from nispcodec.core.arrays import AnyArray, Float32Array, Int32Array, IntArray
 from nispcodec.core.document import Document
 from nispcodec.infer.field import FieldQueries
-from nispcodec.infer.mesh_part_queries import MeshPartQueries
+from nispcodec.infer.mesh_queries import PlacedMeshes
 
 
 class Queries(Protocol):
@@ -45,7 +45,7 @@ class Union:
         if document.field:
             self._parts.append(FieldQueries(document.field))
         if document.meshes:
-            self._parts.append(MeshPartQueries(document.meshes))
+            self._parts.append(PlacedMeshes(document.meshes))
         counts = [part.chart_count for part in self._parts]
         self._first_charts = list(accumulate(counts, initial=0))
 

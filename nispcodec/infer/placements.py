@@ -8,7 +8,8 @@ import numpy as np
 
 from nispcodec.core.arrays import BoolArray, Float64Array, Int32Array
 from nispcodec.core.errors import FormatError
-from nispcodec.core.mesh_part import PART, MeshPart, Placement, Quaternion, check_placed_faces
+from nispcodec.core.mesh_part import PART, MeshPart, Placement, check_placed_faces
+from nispcodec.core.placing import placed_points
 
 FAR = 1e6
 """In radii of the asset: squares of squares of coordinates are far from what float64 holds."""
@@ -82,26 +83,6 @@ def _placed(part: MeshPart, placement: Placement) -> PlacedTriangles:
         sheet=part.sheet,
         chart_materials=materials,
         chart_has_uv=part.chart_has_uv,
-    )
-
-
-def placed_points(placement: Placement, points: Float64Array) -> Float64Array:
-    """Points (n, 3) of a part where a copy of it has them, both in the normalized frame."""
-    turned = rotation_matrix(placement.rotation)
-    if placement.mirrored:
-        turned = turned * np.array([-1.0, 1.0, 1.0])
-    return placement.scale * (points @ turned.T) + np.asarray(placement.offset)
-
-
-def rotation_matrix(quaternion: Quaternion) -> Float64Array:
-    """(3, 3): the rotation by a quaternion, w first, which is divided by its length."""
-    w, x, y, z = np.asarray(quaternion) / np.linalg.norm(quaternion)
-    return np.array(
-        [
-            [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
-            [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
-            [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
-        ]
     )
 
 

@@ -1,4 +1,4 @@
-"""The tuned numbers of simplification, each with its unit and reason; measured in decision 0215."""
+"""The tuned numbers of simplification, each with its unit and reason; measured in decision 0198."""
 
 from __future__ import annotations
 
@@ -74,6 +74,28 @@ class FitConfig:
 
 
 @dataclass(frozen=True)
+class CopiesConfig:
+    """Which bodies are held once.
+
+    fewest        faces of such a body: a placement takes 30 bytes, and of leaves of 72 faces so few
+                  are left in coarse candidates that these took half the bytes of their placements
+    fewest_left   faces that simplifying must leave of it, else its copies are faces like others
+    tolerance     largest distance of a copy's corners from where a placement has them, normalized
+                  frame: below what rounding moves
+    uv_tolerance  the same of UVs
+    alike         bodies whose areas by squares of sizes differ by more than this are not compared
+    most_tried    bodies that one is compared with: where many differ, time
+    """
+
+    fewest: int = 100
+    fewest_left: int = 8
+    tolerance: float = 1e-4
+    uv_tolerance: float = 1e-4
+    alike: float = 0.02
+    most_tried: int = 16
+
+
+@dataclass(frozen=True)
 class LadderConfig:
     """Which candidates are made.
 
@@ -97,6 +119,7 @@ class LadderConfig:
     crease_angle: float | None = None
     collapse: CollapseConfig = CollapseConfig()
     fit: FitConfig = FitConfig()
+    copies: CopiesConfig = CopiesConfig()
 
 
 @dataclass(frozen=True)

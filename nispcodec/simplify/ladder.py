@@ -13,22 +13,24 @@ from nispcodec.core.mesh_part import MAX_GRID_BITS, MeshPart
 from nispcodec.simplify.closest import Tree
 from nispcodec.simplify.collapse import collapsed
 from nispcodec.simplify.config import LadderConfig
+from nispcodec.simplify.copies import Copies
+from nispcodec.simplify.copy_search import copies_of
 from nispcodec.simplify.errors import Errors, Original, mesh_of
 from nispcodec.simplify.position_fit import fitted_positions
-from nispcodec.simplify.quantize import Grid, quantized
+from nispcodec.simplify.scene import scene
 from nispcodec.simplify.source import Source
 from nispcodec.simplify.triangles import Triangles
 from nispcodec.simplify.uv_fit import fitted_uvs
 
-Coded = Callable[[MeshPart], int]
-"""The bytes of a part."""
+Coded = Callable[[tuple[MeshPart, ...]], int]
+"""The bytes of parts, together."""
 
 
 @dataclass(frozen=True)
 class Candidate:
-    """A part, what it costs and how far it is from the original."""
+    """Parts, what they cost and how far they are from the original."""
 
-    part: MeshPart
+    parts: tuple[MeshPart, ...]
     bits: int
     uv_bits: int
     errors: Errors
@@ -37,22 +39,24 @@ class Candidate:
     @cached_property
     def size(self) -> int:
         """Bytes, counted when they are asked for: coding takes as long as all else."""
-        return self.coded(self.part)
+        return self.coded(self.parts)
 
     @property
     def faces(self) -> int:
-        """How many triangles."""
-        return len(self.part.faces)
+        """How many triangles, those of copies not counted."""
+        return sum(len(part.faces) for part in self.parts)
 
 
 @dataclass(frozen=True)
 class Simplifier:
     """Makes candidates of one source; what was fitted once is kept.
 
-    coded     the bytes of a part
+    source    without copies
+    coded     the bytes of parts
     original  what errors are measured against
     """
 
+    copies: Copies
     source: Source
     original: Original
     coded: Coded
@@ -73,10 +77,32 @@ class Simplifier:
         The others, such as those hidden in bodies, may be found where they are, but are not missed.
         Raises MeshError where no face has an area.
         """
-        source = Source(triangles if kept is None else triangles.only(kept))
-        tree = source.tree if kept is None else Tree(triangles.corners)
+        copies = copies_of(triangles, config.copies, kept)
+        return Simplifier._of(copies, triangles, kept, coded, config, seed)
+
+    @staticmethod
+    def of_kept(
+        triangles: Triangles, kept: BoolArray, coded: Coded, config: LadderConfig, seed: int
+    ) -> Simplifier:
+        """As `of`, but others than the kept faces are found only where copies have them."""
+        copies = copies_of(triangles, config.copies, kept)
+        there, kept = triangles.only(copies.covered), kept[copies.covered]
+        return Simplifier._of(copies, there, kept, coded, config, seed)
+
+    @staticmethod
+    def _of(
+        copies: Copies,
+        triangles: Triangles,
+        kept: BoolArray | None,
+        coded: Coded,
+        config: LadderConfig,
+        seed: int,
+    ) -> Simplifier:
+        source = Source(copies.triangles)
+        same = len(source.triangles) == len(triangles)
+        tree = source.tree if same else Tree(triangles.corners)
         original = Original.of(triangles, tree, config.samples, seed, kept)
-        return Simplifier(source, original, coded, config, seed)
+        return Simplifier(copies, source, original, coded, config, seed)
 
     def fitted(self, faces: int) -> Triangles:
         """About so many triangles, positions fitted; the source itself for as many as it has."""
@@ -93,17 +119,16 @@ class Simplifier:
         triangles = self.fitted(faces)
         if faces < len(self.source.triangles):
             # UVs are fitted to the places that rounding leaves.
-            places = Grid.of(triangles.positions, bits).rounded(triangles.positions)
-            placed = replace(triangles, positions=places)
+            placed = self.copies.rounded(triangles, bits)
             uvs = fitted_uvs(self.source, placed, self.config.fit, self.seed).uvs
             triangles = replace(triangles, uvs=uvs)
-        part = quantized(triangles, bits, uv_bits, self.config.crease_angle)
-        errors = self.original.errors(mesh_of(part))
-        return Candidate(part, bits, uv_bits, errors, self.coded)
+        parts = self.copies.parts(triangles, bits, uv_bits, self.config.crease_angle)
+        errors = self.original.errors(scene([(mesh_of(part), part.placements) for part in parts]))
+        return Candidate(parts, bits, uv_bits, errors, self.coded)
 
     def balanced(self, faces: int) -> Candidate:
         """About so many faces, with bits whose rounding suits the error that is there before."""
-        before = self.original.errors(self.fitted(faces).mesh())
+        before = self.original.errors(self.copies.scene(self.fitted(faces)))
         bits = self.bits_for(max(before.distance, self.config.tolerance))
         uv_bits = self.uv_bits_for(max(before.uv_median, self.config.uv_tolerance))
         return self.candidate(faces, bits, uv_bits)

@@ -43,6 +43,14 @@ class Grid:
             low.astype(np.float64), float(np.nextafter(np.float32(step), np.float32(np.inf)))
         )
 
+    def around(self, numbers: Float64Array) -> Grid:
+        """The same grid, its origin moved along it to just below all of other numbers (n, d)."""
+        if not len(numbers):
+            return self
+        steps = np.floor((numbers.min(axis=0) - self.origin) / self.step)
+        low = (self.origin + steps * self.step).astype(np.float32)
+        return Grid(low.astype(np.float64), self.step)
+
     def integers(self, numbers: Float64Array) -> Int32Array:
         """(n, d) int32: the nearest."""
         return np.rint((numbers - self.origin) / self.step).astype(np.int32)
@@ -62,6 +70,13 @@ def quantized(
     none. Raises ValueError for bits below 1 or above MAX_GRID_BITS.
     """
     grid, uv_grid = Grid.of(triangles.positions, bits), Grid.of(triangles.uvs, uv_bits)
+    return on_grids(triangles, grid, uv_grid, crease_angle)
+
+
+def on_grids(
+    triangles: Triangles, grid: Grid, uv_grid: Grid, crease_angle: float | None = None
+) -> MeshPart:
+    """The same on grids that are given."""
     welded = _collapsed(triangles, grid.integers(triangles.positions))
     charts, firsts = charts_of(welded)
     return MeshPart(

@@ -131,17 +131,23 @@ class Triangles:
         )
 
 
-def joined(first: Triangles, second: Triangles) -> Triangles:
-    """Both, which share no corner."""
-    uv_faces = np.where(second.uv_faces < 0, -1, second.uv_faces + len(first.uvs))
+def joined(*pieces: Triangles) -> Triangles:
+    """All of them, which share no corner."""
+    positions = np.cumsum([0, *(len(piece.positions) for piece in pieces)])
+    uvs = np.cumsum([0, *(len(piece.uvs) for piece in pieces)])
+    faces = [piece.faces + at for piece, at in zip(pieces, positions, strict=False)]
+    uv_faces = [
+        np.where(piece.uv_faces < 0, -1, piece.uv_faces + at)
+        for piece, at in zip(pieces, uvs, strict=False)
+    ]
     return Triangles(
-        positions=np.concatenate([first.positions, second.positions]),
-        faces=np.concatenate([first.faces, second.faces + len(first.positions)]),
-        uvs=np.concatenate([first.uvs, second.uvs]),
-        uv_faces=np.concatenate([first.uv_faces, uv_faces]),
-        materials=np.concatenate([first.materials, second.materials]),
-        patches=np.concatenate([first.patches, second.patches]),
-        sheet=np.concatenate([first.sheet, second.sheet]),
+        positions=np.concatenate([piece.positions for piece in pieces]),
+        faces=np.concatenate(faces),
+        uvs=np.concatenate([piece.uvs for piece in pieces]),
+        uv_faces=np.concatenate(uv_faces),
+        materials=np.concatenate([piece.materials for piece in pieces]),
+        patches=np.concatenate([piece.patches for piece in pieces]),
+        sheet=np.concatenate([piece.sheet for piece in pieces]),
     )
 
 

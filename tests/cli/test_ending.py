@@ -94,6 +94,7 @@ def test_nothing_is_left_of_an_encode_that_is_ended(
 ) -> None:
     out = tmp_path / "out.nisp"
     command = [sys.executable, "-c", PROGRAM, place, str(int(number)), str(ball), "-o", str(out)]
+    command += ["--geometry", "field"]
     options = ["--preset", "fast", "--progress", "plain"]
     with subprocess.Popen(
         [*command, *options], stderr=subprocess.PIPE, text=True, start_new_session=True

@@ -10,7 +10,6 @@ from io import BytesIO
 from typing import Any
 
 import numpy as np
-import zstandard
 from PIL import Image, ImageCms
 from PIL.PngImagePlugin import PngInfo
 
@@ -20,13 +19,13 @@ from nispcodec.core.document import ChartTable, Document, Field, Frame, StoredSe
 from nispcodec.core.initial_weights import predicted
 from nispcodec.core.network import Network, NetworkSpec
 from nispcodec.core.slots import SLOTS
-from nispcodec.format import mesh, metadata, pack, weights
+from nispcodec.format import mesh, metadata, pack
 from nispcodec.format.codings import entropy
 from nispcodec.format.codings.registry import BY_NAME
 from nispcodec.format.records import Record, tensors
 from nispcodec.infer.evaluate import evaluate
-from tests.conformance.builder import Row, change, container
-from tests.conformance.malformed import rows, squeezed, with_dictionary
+from tests.conformance.builder import Row, container
+from tests.conformance.malformed import rows, squeezed
 from tests.conformance.mesh_features import asset, box, mesh_features
 from tests.tiny import field_of, varied
 
@@ -501,17 +500,6 @@ def _messages() -> Iterator[tuple[str, bytes]]:
     yield "negative-zero", pack(negative)
 
 
-def _packings() -> Iterator[tuple[str, bytes]]:
-    """Frames of Zstandard as writers other than ours make them."""
-    content = metadata.encode(dataclasses.replace(plain(), info={"note": "again " * 30}))
-    checked = zstandard.ZstdCompressor(write_checksum=True).compress(content)
-    named = with_dictionary(squeezed(content), 0)
-    for name, frame in {"zstd-checksum": checked, "zstd-dictionary-0": named}.items():
-        row = {"payload": frame, "flags": 3, "decoded": len(content)}
-        network_bytes = weights.encode({"sdf": field_of(plain()).sdf}, None)
-        yield name, container(change(rows(None, network_bytes), b"META", **row))
-
-
 def _containers() -> Iterator[tuple[str, bytes]]:
     info: dict[str, str | int | float | bool] = {
         "tool": "conformance", "seed": -1, "large": 2**64 - 1, "error": 4e-4, "ok": True,
@@ -520,7 +508,6 @@ def _containers() -> Iterator[tuple[str, bytes]]:
     yield "info", pack(dataclasses.replace(plain(), info=info))
     text = b"kept, whatever it is " * 20
     extra = {"AAAA": StoredSection(b""), "ZZ99": StoredSection(squeezed(text), len(text))}
-    yield from _packings()
     noise = StoredSection(b"no frame of Zstandard", 2**20)
     yield "unknown-ancillary-noise", pack(dataclasses.replace(plain(), extra={"ZSTD": noise}))
     yield "unknown-ancillary", pack(dataclasses.replace(plain(), extra=extra))

@@ -15,7 +15,7 @@ from nispcodec.core.errors import FitError, NispError
 from nispcodec.core.mesh_part import MeshPart
 from nispcodec.core.network import NetworkSpec
 from nispcodec.encode.choice import Choice, own_bytes
-from nispcodec.encode.config import FormConfig
+from nispcodec.encode.config import Tuning
 from nispcodec.encode.mesh_form import coded_bytes
 from nispcodec.simplify.errors import Errors
 from tests import tiny
@@ -47,15 +47,15 @@ class Told:
 
 
 def candidate(errors: Errors = EXACT) -> Any:
-    return SimpleNamespace(part=PART, errors=errors, size=coded_bytes(PART))
+    return SimpleNamespace(parts=(PART,), errors=errors, size=coded_bytes((PART,)))
 
 
 def choice(form: Told, **options: Any) -> Choice:
-    return Choice(form, EncodeConfig(**options), FormConfig())  # type: ignore[arg-type]
+    return Choice(form, EncodeConfig(**options), Tuning())  # type: ignore[arg-type]
 
 
-def as_mesh(part: MeshPart) -> Document:
-    return replace(FIELD, field=None, meshes=(part,))
+def as_mesh(parts: tuple[MeshPart, ...]) -> Document:
+    return replace(FIELD, field=None, meshes=parts)
 
 
 @pytest.mark.parametrize(
@@ -117,7 +117,7 @@ def test_triangles_asked_for_are_as_near_as_the_preset_says() -> None:
     form = Told(best=candidate())
     chosen = choice(form, geometry="mesh", preset="best").triangles(as_mesh)
     assert chosen.document.meshes == (PART,)
-    assert form.asked == [("best", FormConfig().most_distance["best"], math.inf)]
+    assert form.asked == [("best", Tuning().training.budgets["best"].mesh, math.inf)]
 
 
 def test_targets_that_triangles_miss_are_errors() -> None:

@@ -11,6 +11,7 @@ from nispcodec.encode.config import FormConfig
 from nispcodec.encode.mesh_form import MeshForm, coded_bytes
 from nispcodec.geometry.analysis import analyze
 from tests.geometry.shapes import box_asset, soup, sphere
+from tests.simplify.scenes import copied, pebble
 
 CONFIG = FormConfig()
 
@@ -42,7 +43,7 @@ def test_few_large_faces_are_kept_as_they_are(box: MeshForm) -> None:
     best = box.best(1e-3, math.inf)
     assert best.faces == 12
     assert best.errors.distance <= CONFIG.negligible
-    assert best.size == coded_bytes(best.part) < 150
+    assert best.size == coded_bytes(best.parts) < 150
 
 
 def test_the_best_stays_within_both_limits(ball: MeshForm) -> None:
@@ -64,5 +65,14 @@ def test_a_candidate_of_a_size_is_the_nearest_found(ball: MeshForm) -> None:
 def test_errors_of_a_document_are_those_of_what_it_decodes_to(ball: MeshForm) -> None:
     best = ball.best(4e-3, math.inf)
     frame = Frame((0.0, 0.0, 0.0), 1.0)
-    document = Document(frame, (Material(),), (), meshes=(best.part,))
+    document = Document(frame, (Material(),), (), meshes=best.parts)
     assert ball.errors(document).distance == pytest.approx(best.errors.distance, rel=0.05)
+
+
+def test_copies_are_held_once() -> None:
+    analysis = analyze(copied(pebble()))
+    form = MeshForm(analysis, 0, CONFIG, silent)
+    best = form.best(1e-3, math.inf)
+    assert [len(part.placements) for part in best.parts] == [4]
+    document = Document(analysis.frame, (Material(),) * 4, (), meshes=best.parts)
+    assert form.errors(document).distance == pytest.approx(best.errors.distance, rel=0.05)

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
 
+import nispcodec
 from nispcodec.core.network import Network
 from nispcodec.extract.config import ResolutionConfig, SimplifyConfig
 from nispcodec.extract.isosurface import Surface, near_surface
@@ -87,3 +89,11 @@ def test_a_simplifier_that_is_stuck_is_not_asked_again(monkeypatch: pytest.Monke
 
 def test_as_many_faces_as_asked_for_are_no_warning() -> None:
     assert NispModel(tiny.document()).to_mesh(24, faces=300).warnings == ()
+
+
+@pytest.mark.parametrize("stem", ["uv-nan", "uv-infinite"])
+def test_uvs_that_are_not_finite_become_0(stem: str) -> None:
+    folder = Path(__file__).parents[1] / "conformance"
+    mesh = nispcodec.load(folder / f"{stem}.nisp").to_mesh(32)
+    assert len(mesh.faces) > 0
+    assert not mesh.uvs.any()

@@ -37,3 +37,11 @@ def test_a_sheet_is_a_sheet_as_a_whole() -> None:
     assert seen.faces.all()
     assert seen.sheet.tolist() == [False] * 12 + [True] * len(card)
     assert area(seen.mesh.corners).sum() == np.float64(24 + 4)
+
+
+def test_what_is_seen_through_an_opening_is_shown() -> None:
+    """A small box in a box without its top: inside by the winding number, and seen."""
+    open_box = BOX[~(BOX[..., 2] == 1).all(axis=1)]
+    inner = cube((-0.25, -0.25, -0.9), 0.5)
+    seen = found(np.concatenate([open_box, inner]))
+    assert seen.faces[len(open_box) :].sum() >= 10

@@ -197,3 +197,16 @@ def test_bad_charts_are_refused(charts: np.ndarray | None) -> None:
     network = tiny.random_network(SPECS["frames"])
     with pytest.raises(QueryError, match="charts: expected"):
         evaluate(network, np.zeros((3, 3), np.float32), charts)
+
+
+@pytest.mark.filterwarnings("error")
+def test_what_overflows_is_no_warning() -> None:
+    spec = NetworkSpec((1, 1), 1, activation="relu")
+    tensors = {name: np.full(shape, 3e38, np.float32) for name, shape in spec.shapes.items()}
+    values = evaluate(Network(spec, tensors), np.ones((2, 3), np.float32), None)
+    assert np.isinf(values).all()
+
+
+def test_blocks_of_thousands_of_outputs_are_small() -> None:
+    assert block_size(NetworkSpec((4,), 65_535)) * 65_535 <= 2**22
+    assert block_size(NetworkSpec((30,), 300)) == block_size(NetworkSpec((30,), 1))

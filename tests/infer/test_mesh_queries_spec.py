@@ -9,8 +9,8 @@ import pytest
 
 from nispcodec.core.arrays import Float64Array
 from nispcodec.core.mesh_part import Placement
+from nispcodec.core.placing import placed_points
 from nispcodec.infer.mesh_queries import PlacedMeshes
-from nispcodec.infer.placements import placed_points
 from tests.format import spec
 from tests.infer.parts import cube, part_of, points_off, soup
 

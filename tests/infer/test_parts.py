@@ -7,7 +7,7 @@ import pytest
 
 from nispcodec.core.document import Document
 from nispcodec.infer.field import FieldQueries
-from nispcodec.infer.mesh_part_queries import MeshPartQueries
+from nispcodec.infer.mesh_queries import PlacedMeshes
 from nispcodec.infer.parts import Union
 from tests import tiny
 from tests.infer.parts import cube, part_of
@@ -24,7 +24,7 @@ def both() -> Document:
 
 
 def test_the_distance_is_the_least_of_all_parts(both: Document) -> None:
-    field, mesh = FieldQueries(field_of(both)).sdf(POINTS), MeshPartQueries((MESH,)).sdf(POINTS)
+    field, mesh = FieldQueries(field_of(both)).sdf(POINTS), PlacedMeshes((MESH,)).sdf(POINTS)
     np.testing.assert_array_equal(Union(both).sdf(POINTS), np.minimum(field, mesh))
     assert (mesh < field).any()
     assert (field < mesh).any()
@@ -32,7 +32,7 @@ def test_the_distance_is_the_least_of_all_parts(both: Document) -> None:
 
 def test_looks_are_those_of_the_nearest_part(both: Document) -> None:
     union = Union(both)
-    field, mesh = FieldQueries(field_of(both)), MeshPartQueries((MESH,))
+    field, mesh = FieldQueries(field_of(both)), PlacedMeshes((MESH,))
     near = np.abs(field.sdf(POINTS)) <= np.abs(mesh.sdf(POINTS))
     charts = union.charts(POINTS)
     np.testing.assert_array_equal(charts[near], field.charts(POINTS[near]))
@@ -59,7 +59,7 @@ def test_charts_are_numbered_through(both: Document) -> None:
 @pytest.mark.parametrize("kind", ["field", "mesh"])
 def test_one_part_alone_answers_as_it_is(both: Document, kind: str) -> None:
     alone = replace(both, meshes=()) if kind == "field" else replace(both, field=None)
-    queries = FieldQueries(field_of(both)) if kind == "field" else MeshPartQueries((MESH,))
+    queries = FieldQueries(field_of(both)) if kind == "field" else PlacedMeshes((MESH,))
     union = Union(alone)
     np.testing.assert_array_equal(union.sdf(POINTS), queries.sdf(POINTS))
     np.testing.assert_array_equal(union.charts(POINTS), queries.charts(POINTS))

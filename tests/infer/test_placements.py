@@ -8,8 +8,9 @@ import pytest
 from nispcodec.core.arrays import Float64Array
 from nispcodec.core.errors import FormatError
 from nispcodec.core.mesh_part import MAX_PLACED_FACES, Placement
+from nispcodec.core.placing import placed_points, rotation_matrix
 from nispcodec.infer.mesh_queries import PlacedMeshes
-from nispcodec.infer.placements import PlacedTriangles, placed_points, rotation_matrix
+from nispcodec.infer.placements import PlacedTriangles
 from tests.infer.parts import part_of, points_about, soup, sphere
 
 HALF = 0.5**0.5

@@ -74,11 +74,14 @@ def area(triangles: Triangles) -> float:
     return float(np.linalg.norm(np.cross(b - a, c - a), axis=1).sum() / 2)
 
 
-def coded(part: MeshPart) -> int:
+def coded(parts: tuple[MeshPart, ...]) -> int:
     """Bytes as any coder takes: so many for each vertex and UV by their bits, and each face."""
-    bits = int(part.positions.max()).bit_length() * part.positions.size
-    bits += int(part.uvs.max(initial=0)).bit_length() * part.uvs.size
-    return (bits + 2 * len(part.faces)) // 8 + 10
+    bits = 0
+    for part in parts:
+        bits += int(part.positions.max()).bit_length() * part.positions.size
+        bits += int(part.uvs.max(initial=0)).bit_length() * part.uvs.size
+        bits += 2 * len(part.faces) + 200 * (len(part.placements) - 1)
+    return bits // 8 + 10
 
 
 def simplifier(triangles: Triangles) -> Simplifier:

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
 
+from nispcodec.format.mesh import encode
 from nispcodec.simplify.ladder import Simplifier, ladder
 from nispcodec.simplify.triangles import Triangles
 from tests.geometry import shapes
@@ -51,3 +53,13 @@ def test_finer_errors_want_more_bits() -> None:
     assert made.bits_for(1e-4) == made.bits_for(1e-3) + 3
     assert made.uv_bits_for(1e-3) < made.uv_bits_for(1e-4)
     assert simplifier(bare_ball(4)).uv_bits_for(1e-3) == 1
+
+
+def test_without_copies_hidden_faces_change_nothing() -> None:
+    inner = shapes.sphere(5) * 0.4
+    both = triangles_of(shapes.soup(np.concatenate([shapes.sphere(8), inner])))
+    kept = np.arange(len(both)) < len(both) - len(inner)
+    alone = simplifier(both.only(kept)).balanced(60)
+    found = Simplifier.of_kept(both, kept, coded, SMALL, 0).balanced(60)
+    assert found.errors == alone.errors
+    assert encode(found.parts) == encode(alone.parts)

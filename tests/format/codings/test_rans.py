@@ -59,3 +59,12 @@ def test_broken_streams_are_refused(count: int) -> None:
 def test_states_take_turns_only_in_long_streams() -> None:
     assert {rans.lanes(count) for count in (1, rans.LONG - 1)} == {1}
     assert rans.lanes(rans.LONG) == rans.LONG >> rans.TURNS_BITS > 1
+
+
+@pytest.mark.parametrize("count", [1, rans.LONG])
+def test_a_stream_begins_with_states_that_an_encoder_ends_with(count: int) -> None:
+    table = np.array([0, 8000, rans.SCALE])
+    data = bytearray(rans.encode([0] * count, [8000] * count))
+    data[0:2] = bytes(2)
+    with pytest.raises(FormatError, match="first_state: expected at least 65536"):
+        rans.decode(Reader("NETS", bytes(data)), [(count, table)])
