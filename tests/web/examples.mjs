@@ -1,14 +1,14 @@
 /**
- * The examples for three.js in headless Chromium: node examples.mjs CHROMIUM ADDRESS MODEL, where
- * ADDRESS serves the folder web/ and MODEL is the file's path below it. Prints JSON of what is seen.
+ * The examples for three.js in headless Chromium: node examples.mjs CHROMIUM ADDRESS MODEL [EXAMPLE...],
+ * where ADDRESS serves the folder web/ and MODEL is the file's path below it; all examples by default. Prints JSON of what is seen.
  */
 import { launched } from "./chromium.mjs";
 
-const [executable, address, model] = process.argv.slice(2);
+const [executable, address, model, ...wanted] = process.argv.slice(2);
 const browser = await launched(executable);
 const found = { said: [] };
 try {
-  for (const name of ["mesh", "field"]) {
+  for (const name of wanted.length ? wanted : ["mesh", "field"]) {
     const page = await browser.newPage({ viewport: { width: 64, height: 64 } });
     page.on("pageerror", (error) => found.said.push(String(error)));
     page.on("console", (message) => {

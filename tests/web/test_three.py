@@ -8,30 +8,32 @@ import threading
 from collections.abc import Iterator
 from http.server import SimpleHTTPRequestHandler, ThreadingHTTPServer
 from pathlib import Path
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 import pytest
 
 from nispcodec.format import pack
+from nispcodec.model import NispModel
 from tests import tiny
+from tests.web.mesh_documents import documents
 from tests.web.programs import HERE, WEB, chromium, npm_package, run_node
 
 
 class Served(SimpleHTTPRequestHandler):
-    """Files of web/, and the model; silent."""
+    """Files of web/, and the models by their paths; silent."""
 
-    model = b""
+    models: ClassVar[dict[str, bytes]] = {}
 
     def do_GET(self) -> None:
-        """The model at its name, else a file."""
-        if self.path != "/three/model.nisp":
+        """A model at its name, else a file."""
+        if self.path not in self.models:
             super().do_GET()
             return
         self.send_response(200)
-        self.send_header("Content-Length", str(len(self.model)))
+        self.send_header("Content-Length", str(len(self.models[self.path])))
         self.end_headers()
-        self.wfile.write(self.model)
+        self.wfile.write(self.models[self.path])
 
     def log_message(self, format: str, *args: object) -> None:
         """Nothing."""
@@ -39,7 +41,9 @@ class Served(SimpleHTTPRequestHandler):
 
 @pytest.fixture
 def address(monkeypatch: pytest.MonkeyPatch) -> Iterator[str]:
-    monkeypatch.setattr(Served, "model", pack(tiny.document()))
+    models = {"model": tiny.document(), "copies": documents()["copies"]}
+    held = {f"/three/{name}.nisp": pack(each) for name, each in models.items()}
+    monkeypatch.setattr(Served, "models", held)
     handler = functools.partial(Served, directory=str(WEB))
     with ThreadingHTTPServer(("127.0.0.1", 0), handler) as server:
         thread = threading.Thread(target=server.serve_forever, daemon=True)
@@ -77,3 +81,18 @@ def test_examples_show_meshes_and_a_field_among_meshes(address: str, tmp_path: P
         other = (colors.max(axis=-1) > 0) & ~floor
         assert floor.mean() > 0.05, kind
         assert other.mean() > 0.05, kind
+
+
+@pytest.mark.slow
+def test_the_loader_hands_over_mesh_parts(address: str, tmp_path: Path) -> None:
+    npm_package("playwright-core")
+    npm_package("three")
+    said = run_node(HERE / "examples.mjs", chromium(), address, "copies.nisp", "mesh", timeout=900)
+    found = json.loads(said)
+    assert found["said"] == []
+    meshes = found["mesh"]["meshes"]
+    assert {each["name"] for each in meshes} == {"painted", "plain"}
+    wanted = NispModel(documents()["copies"]).to_mesh().positions
+    low, high = (np.array([each[end] for each in meshes]) for end in ("low", "high"))
+    assert np.abs(low.min(axis=0) - wanted.min(axis=0)).max() < 1e-4
+    assert np.abs(high.max(axis=0) - wanted.max(axis=0)).max() < 1e-4

@@ -27,9 +27,8 @@ def contents() -> dict[str, bytes]:
 def test_it_decodes_what_the_library_compresses(tmp_path: Path) -> None:
     for name, data in contents().items():
         for level in (-5, 1, 3, 19):
-            for checksum in (False, True):
-                stem = f"{name}{level}{checksum}"
-                packer = zstandard.ZstdCompressor(level=level, write_checksum=checksum)
-                (tmp_path / stem).write_bytes(data)
-                (tmp_path / f"{stem}.zst").write_bytes(packer.compress(data))
+            stem = f"{name}{level}"
+            (tmp_path / stem).write_bytes(data)
+            packed = zstandard.ZstdCompressor(level=level).compress(data)
+            (tmp_path / f"{stem}.zst").write_bytes(packed)
     assert run_node(HERE / "unzstd.mjs", tmp_path) == ""

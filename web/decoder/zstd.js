@@ -77,20 +77,14 @@ class Frame {
   }
 
   decode() {
-    const checked = this.header();
+    this.header();
     let last = 0;
     while (!last) last = this.block();
     sound(this.written === this.size, `${this.written} bytes of content`);
-    if (checked) {
-      const found = xxh64(this.out) & 0xffffffffn;
-      sound(BigInt(this.view.getUint32(this.at, true)) === found, "another checksum");
-      this.at += 4;
-    }
     sound(this.at === this.data.length, "bytes after it");
     return this.out;
   }
 
-  /** Whether a checksum follows the blocks. */
   header() {
     sound(this.view.getUint32(0, true) === MAGIC, "another magic number");
     const descriptor = this.view.getUint8(4);
@@ -99,7 +93,7 @@ class Frame {
     this.at = 5;
     sound(!(descriptor & 8), "a reserved bit");
     if (!single) this.at++;
-    for (let i = [0, 1, 2, 4][descriptor & 3]; i > 0; i--) sound(!this.view.getUint8(this.at++), "a dictionary");
+    sound(!(descriptor & 7), "a dictionary or a checksum");
     sound(form || single, "no content size");
     const stated = [
       () => this.view.getUint8(this.at),
@@ -109,7 +103,6 @@ class Frame {
     ][form]();
     this.at += 1 << form;
     sound(stated === this.size, `a content size of ${stated}`);
-    return descriptor & 4;
   }
 
   /** Decodes one block; whether it was the last. */
@@ -476,38 +469,4 @@ function huffmanTable(weights) {
     });
   }
   return { bits, symbol, width };
-}
-
-/** XXH64 with seed 0. @param {Uint8Array} data @returns {bigint} */
-function xxh64(data) {
-  const [p1, p2, p3, p4, p5] = [
-    0x9e3779b185ebca87n, 0xc2b2ae3d27d4eb4fn, 0x165667b19e3779f9n, 0x85ebca77c2b2ae63n, 0x27d4eb2f165667c5n,
-  ];
-  const whole = (/** @type {bigint} */ value) => BigInt.asUintN(64, value);
-  const turn = (/** @type {bigint} */ value, /** @type {bigint} */ by) => whole(value << by) | (value >> (64n - by));
-  const round = (/** @type {bigint} */ lane, /** @type {bigint} */ input) =>
-    whole(turn(whole(lane + input * p2), 31n) * p1);
-  const view = new DataView(data.buffer, data.byteOffset, data.byteLength);
-  let at = 0;
-  let hash = p5;
-  if (data.length >= 32) {
-    const lanes = [whole(p1 + p2), p2, 0n, whole(-p1)];
-    for (; at + 32 <= data.length; at += 32) {
-      for (let i = 0; i < 4; i++) lanes[i] = round(lanes[i], view.getBigUint64(at + 8 * i, true));
-    }
-    hash = whole(turn(lanes[0], 1n) + turn(lanes[1], 7n) + turn(lanes[2], 12n) + turn(lanes[3], 18n));
-    for (const lane of lanes) hash = whole((hash ^ round(0n, lane)) * p1 + p4);
-  }
-  hash = whole(hash + BigInt(data.length));
-  for (; at + 8 <= data.length; at += 8) {
-    hash = whole(turn(hash ^ round(0n, view.getBigUint64(at, true)), 27n) * p1 + p4);
-  }
-  if (at + 4 <= data.length) {
-    hash = whole(turn(hash ^ whole(BigInt(view.getUint32(at, true)) * p1), 23n) * p2 + p3);
-    at += 4;
-  }
-  for (; at < data.length; at++) hash = whole(turn(hash ^ whole(BigInt(data[at]) * p5), 11n) * p1);
-  hash = whole((hash ^ (hash >> 33n)) * p2);
-  hash = whole((hash ^ (hash >> 29n)) * p3);
-  return hash ^ (hash >> 32n);
 }

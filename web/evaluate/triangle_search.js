@@ -4,7 +4,7 @@ import { areaNormal, CLOSEST, closestTo, solidAngle } from "./triangle.js";
  * faces in a leaf at most; radii away from where a box's faces count as one (Barill et al. 2018); how
  * near to a half the winding number is taken again, with faces counting as one this much farther away.
  */
-const SEARCH = Object.freeze({ leaf: 4, away: 3, doubt: 0.1, again: 5 });
+const SEARCH = Object.freeze({ leaf: 4, away: 4, doubt: 0.2, again: 4 });
 
 /** Numbers of a box: its lower and upper corner; half the sum of its faces' normals, their middle, area and radius. */
 const BOX = 14;
