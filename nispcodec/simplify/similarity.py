@@ -19,7 +19,8 @@ def similarity(source: Float64Array, target: Float64Array, mirrored: bool) -> Pl
     signs = np.array([1.0, 1.0, np.sign(np.linalg.det(left @ right)) or 1.0])
     turn = ((left * signs) @ right).T
     spread = max(float(np.square(given - center).sum()), np.finfo(np.float64).tiny)
-    scale = float((sizes * signs).sum()) / spread
+    # A single spot has no size that could change.
+    scale = float((sizes * signs).sum()) / spread or 1.0
     shift = there - scale * (turn @ center)
     return Placement(_quaternion(turn), (shift[0], shift[1], shift[2]), scale, mirrored)
 

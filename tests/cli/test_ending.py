@@ -25,6 +25,8 @@ import os, signal, sys, threading
 import nispcodec, nispcodec.io.load, nispcodec.core.atomic_write
 from nispcodec_cli import main
 
+# A shell that starts tests in the background has them ignore Ctrl-C, and so would this program.
+signal.signal(signal.SIGINT, signal.default_int_handler)
 place, number, options = sys.argv[1], int(sys.argv[2]), sys.argv[3:]
 encode, read, sync = nispcodec.encode, nispcodec.io.load.read_obj, os.fsync
 ended = False
@@ -114,6 +116,7 @@ import nispcodec.bake.unwrap
 
 if __name__ == "__main__":
     import multiprocessing.process as process
+    signal.signal(signal.SIGINT, signal.default_int_handler)
     start = process.BaseProcess.start
     def started(child):
         start(child)

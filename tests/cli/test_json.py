@@ -19,6 +19,7 @@ CALLS: dict[str, tuple[object, ...]] = {
     "decode": ("tiny.nisp", "-o", "out.obj", "--resolution", 16),
     "render": ("tiny.nisp", "-o", "t.png", "--size", 16, "--turntable", 2),
     "sheet": ("ball.obj", "ball.obj", "-o", "s.png", "--size", 32),
+    "view": ("tiny.nisp", "-o", "page.html"),
     "info": ("tiny.nisp",),
     "verify": ("tiny.nisp",),
     "recode": ("tiny.nisp", "-o", "re.nisp", "--no-textures"),
