@@ -12,7 +12,7 @@ ASSETS ?= ../shared/assets
 RUNS ?= 2000000
 TORCH ?= torch==2.13.0
 BIN := .venv/bin
-KERNEL := $(wildcard nispcodec/train/backend/native/kernel/* nispcodec/infer/native/kernel/*)
+KERNEL := $(wildcard nispcodec/core/kernel/* nispcodec/train/backend/native/kernel/* nispcodec/infer/native/kernel/*)
 
 .PHONY: setup demo test lint docs package web fuzz sanitize bench
 

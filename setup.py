@@ -22,6 +22,7 @@ PACKAGES = {
     "nispcodec.train.backend.native": ["-ffp-contract=fast"],
     "nispcodec.infer.native": ["-ffp-contract=off"],
 }
+EXPORTS = "nispcodec/core/kernel/exports.h"
 # -ffast-math is not wanted: kernel/vectors.h says why.
 COMPILE = [
     *("-std=c++17", "-O3", "-fno-math-errno", "-fno-trapping-math"),
@@ -55,7 +56,7 @@ def kernel(package: str, isa: str, length: int, told: list[str]) -> Extension:
     return Extension(
         f"{package}._kernel_{isa}",
         [f"{folder}/interface.cpp"],
-        depends=[str(path) for path in sorted(Path(folder).glob("*.h"))],
+        depends=[EXPORTS, *(str(path) for path in sorted(Path(folder).glob("*.h")))],
         define_macros=[("NISP_VECTOR_LENGTH", str(length))],
         extra_compile_args=told,
         extra_link_args=["-pthread"],

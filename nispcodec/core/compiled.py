@@ -68,7 +68,7 @@ def _best(kernel: CompiledKernel) -> ctypes.CDLL:
     failures: list[str] = []
     for _, functions in _loading(kernel, failures):
         return functions
-    raise KernelError(f"no kernel: {'; '.join(failures)}")
+    raise KernelError("; ".join(failures))
 
 
 def _loading(kernel: CompiledKernel, failures: list[str]) -> Iterator[tuple[str, ctypes.CDLL]]:

@@ -2,30 +2,12 @@
 //
 // Nothing here takes memory but the stack, so nothing throws.
 
-#define EXPORTED extern "C" __attribute__((visibility("default")))
-
+#include "../../../core/kernel/exports.h"
 #include "closest.h"
 #include "winding.h"
 
 // To be raised with every change of what is below, or of a struct.
 EXPORTED int32_t nisp_version() { return 1; }
-
-// The best instruction set of this processor: x86-64-v2, -v3, -v4; 0 where there is nothing to say.
-EXPORTED int32_t nisp_best_level() {
-#if defined(__x86_64__)
-    __builtin_cpu_init();
-    if (!__builtin_cpu_supports("sse4.2") || !__builtin_cpu_supports("popcnt")) return 0;
-    if (!__builtin_cpu_supports("avx2") || !__builtin_cpu_supports("fma") || !__builtin_cpu_supports("bmi2"))
-        return 2;
-    for (bool there : {__builtin_cpu_supports("avx512f") != 0, __builtin_cpu_supports("avx512bw") != 0,
-                       __builtin_cpu_supports("avx512cd") != 0, __builtin_cpu_supports("avx512dq") != 0,
-                       __builtin_cpu_supports("avx512vl") != 0})
-        if (!there) return 3;
-    return 4;
-#else
-    return 0;
-#endif
-}
 
 // Of points (count, 3) the closest face and the squared distance from it.
 EXPORTED void nisp_closest(const nisp::Tree* tree, const double* points, int64_t count, int32_t* faces,

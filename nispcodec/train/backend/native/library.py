@@ -1,27 +1,16 @@
-"""Finding and loading the compiled kernel: the best instruction set that the processor has."""
+"""The functions of the compiled kernel, and the structs that they take."""
 
 from __future__ import annotations
 
 import ctypes
-import platform
-from collections.abc import Iterator
 from dataclasses import dataclass
-from functools import cache
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
 from nispcodec.core.arrays import AnyArray
+from nispcodec.core.compiled import LEVELS, OTHER, CompiledKernel, KernelError
 from nispcodec.core.errors import NispError
-
-LEVELS = ("v2", "v3", "v4")
-"""Of x86-64, each with the instructions of those before; the first is on every processor of today.
-
-The library of an instruction set is `_kernel_NAME.so` beside this file.
-"""
-OTHER = "neon"
-"""On arm64 there is but one."""
 
 
 class NativeError(NispError):
@@ -79,28 +68,31 @@ class Library:
     isa: str
     functions: ctypes.CDLL
 
-    interface = 1
-    """The version of the functions' arguments that this package calls."""
-
 
 def library(isa: str | None = None) -> Library:
     """The kernel for an instruction set, "v2", "v3", "v4" or "neon"; without one for the best.
 
     Raises NativeError where there is none, or none that loads here.
     """
-    if isa is None:
-        return _best()
-    if isa not in (*LEVELS, OTHER):
-        raise NativeError(f"instruction set: expected {', '.join(LEVELS)} or {OTHER}, found {isa}")
-    if isa in LEVELS[1:] and isa not in available():
-        raise NativeError(f"the processor has no instruction set {isa}, or its kernel is not built")
-    return _load(isa)
+    try:
+        if isa is None:
+            functions = KERNEL.best()
+            return Library(available()[0], functions)
+        if isa not in (*LEVELS, OTHER):
+            known = f"{', '.join(LEVELS)} or {OTHER}"
+            raise NativeError(f"instruction set: expected {known}, found {isa}")
+        if isa in LEVELS[1:] and isa not in available():
+            raise NativeError(
+                f"the processor has no instruction set {isa}, or its kernel is not built"
+            )
+        return Library(isa, KERNEL.load(isa))
+    except KernelError as why:
+        raise NativeError(f"no native backend: {why}") from why
 
 
-@cache
 def available() -> tuple[str, ...]:
     """The instruction sets that the processor has and that were built, the best first."""
-    return tuple(found.isa for found in _loading([]))
+    return KERNEL.available()
 
 
 def pointer(array: AnyArray | None) -> ctypes.c_void_p:
@@ -119,64 +111,6 @@ def checked(name: str, array: AnyArray, kind: type[np.generic], *shape: int | No
         raise ValueError(f"{name}: {expected}, found {array.dtype} {array.shape}")
 
 
-@cache
-def _best() -> Library:
-    failures: list[str] = []
-    for found in _loading(failures):
-        return found
-    raise NativeError(f"no native backend: {'; '.join(failures)}")
-
-
-def _loading(failures: list[str]) -> Iterator[Library]:
-    """Those that load, the best first; adds to `failures` why others do not."""
-    for isa in _candidates(failures):
-        try:
-            yield _load(isa)
-        except NativeError as why:
-            failures.append(str(why))
-
-
-def _candidates(failures: list[str]) -> list[str]:
-    """What the processor runs, the best first; the simplest kernel tells."""
-    if platform.machine() in ("arm64", "aarch64"):
-        return [OTHER]
-    try:
-        level = int(_load(LEVELS[0]).functions.nisp_best_level())
-    except NativeError as why:
-        failures.append(str(why))
-        return []
-    if not level:
-        failures.append("the processor lacks SSE 4.2")
-    return [isa for isa in reversed(LEVELS) if int(isa[1:]) <= level]
-
-
-def _path(isa: str) -> Path:
-    return Path(__file__).parent / f"_kernel_{isa}.so"
-
-
-@cache
-def _load(isa: str) -> Library:
-    path = _path(isa)
-    if not path.exists():
-        raise NativeError(f"{path.name} was not built (no C++ compiler when this was installed?)")
-    try:
-        functions = ctypes.CDLL(str(path))
-        version = functions.nisp_version()
-    except (OSError, AttributeError) as why:
-        raise NativeError(f"{path.name} does not load: {why}") from why
-    if version != Library.interface:
-        expected = f"expected version {Library.interface}, found {version}"
-        raise NativeError(f"{path.name}: {expected}; install or build again")
-    return Library(isa, _declared(functions))
-
-
-def _declared(functions: ctypes.CDLL) -> ctypes.CDLL:
-    for name, (result, arguments) in _SIGNATURES.items():
-        function: Any = getattr(functions, name)
-        function.restype, function.argtypes = result, arguments
-    return functions
-
-
 _P, _I, _L, _F, _D = (
     ctypes.c_void_p,
     ctypes.c_int32,
@@ -184,22 +118,27 @@ _P, _I, _L, _F, _D = (
     ctypes.c_float,
     ctypes.c_double,
 )
-_SIGNATURES: dict[str, tuple[Any, list[Any]]] = {
-    "nisp_best_level": (_I, []),
-    "nisp_vector_length": (_I, []),
-    "nisp_peak": (_L, [_L]),
-    "nisp_trainer_new": (_P, [_P, _P, _P, _P]),
-    "nisp_trainer_free": (None, [_P]),
-    "nisp_set_threads": (_I, [_P, _I]),
-    "nisp_restart": (None, [_P]),
-    "nisp_resume": (None, [_P]),
-    "nisp_gradient": (_F, [_P, _P, _P, _I, _P]),
-    "nisp_steps": (_I, [_P, _P, _P, _P, _I, _I, _P, _P]),
-    "nisp_soap_gradient": (_I, [_P, _I, _P, _P, _P]),
-    "nisp_soap_begin": (None, [_P, _I, _P, _P]),
-    "nisp_outputs": (None, [_P, _P, _P, _P, _L, _P]),
-    "nisp_slopes": (None, [_P, _P, _P, _P, _P, _L, _P, _L, _P]),
-    "nisp_grid_new": (_P, [_P, _I]),
-    "nisp_grid_free": (None, [_P]),
-    "nisp_error_radii": (_I, [_P, _P, _P, _D, _I, _P]),
-}
+KERNEL = CompiledKernel(
+    folder=Path(__file__).parent,
+    interface=1,
+    signatures=(
+        ("nisp_best_level", _I, ()),
+        ("nisp_vector_length", _I, ()),
+        ("nisp_peak", _L, (_L,)),
+        ("nisp_trainer_new", _P, (_P, _P, _P, _P)),
+        ("nisp_trainer_free", None, (_P,)),
+        ("nisp_set_threads", _I, (_P, _I)),
+        ("nisp_restart", None, (_P,)),
+        ("nisp_resume", None, (_P,)),
+        ("nisp_gradient", _F, (_P, _P, _P, _I, _P)),
+        ("nisp_steps", _I, (_P, _P, _P, _P, _I, _I, _P, _P)),
+        ("nisp_soap_gradient", _I, (_P, _I, _P, _P, _P)),
+        ("nisp_soap_begin", None, (_P, _I, _P, _P)),
+        ("nisp_outputs", None, (_P, _P, _P, _P, _L, _P)),
+        ("nisp_slopes", None, (_P, _P, _P, _P, _P, _L, _P, _L, _P)),
+        ("nisp_grid_new", _P, (_P, _I)),
+        ("nisp_grid_free", None, (_P,)),
+        ("nisp_error_radii", _I, (_P, _P, _P, _D, _I, _P)),
+    ),
+)
+"""Functions of kernel/interface.cpp; `interface` is the version of their arguments."""

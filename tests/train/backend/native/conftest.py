@@ -8,7 +8,8 @@ from collections.abc import Iterator
 import pytest
 import torch
 
-from nispcodec.train.backend.native.library import LEVELS, OTHER, NativeError, available, library
+from nispcodec.core.compiled import LEVELS, OTHER
+from nispcodec.train.backend.native.library import NativeError, available, library
 
 
 def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:

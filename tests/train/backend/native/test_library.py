@@ -4,33 +4,26 @@ import os
 import shutil
 import subprocess
 import sys
-from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
+from nispcodec.core.compiled import LEVELS
 from nispcodec.train.backend.native import library as module
-from nispcodec.train.backend.native.library import LEVELS, Library, NativeError, available, library
+from nispcodec.train.backend.native.library import NativeError, available, library
 
 ROOT = Path(__file__).parents[4]
 NATIVE = Path("nispcodec/train/backend/native")
 
 
 @pytest.fixture
-def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """A copy of the kernels, which are loaded from there."""
     for isa in available():
-        shutil.copy(module._path(isa), tmp_path)
-    monkeypatch.setattr(module, "_path", lambda isa: tmp_path / f"_kernel_{isa}.so")
-    forget()
-    yield tmp_path
-    forget()
-
-
-def forget() -> None:
-    """Load anew what was loaded."""
-    for remembered in (module._load, module._best, module.available):
-        remembered.cache_clear()
+        shutil.copy(module.KERNEL.path(isa), tmp_path)
+    monkeypatch.setattr(module, "KERNEL", replace(module.KERNEL, folder=tmp_path))
+    return tmp_path
 
 
 def test_the_best_that_loads_is_taken(folder: Path) -> None:
@@ -54,7 +47,8 @@ def test_without_any_the_error_says_why(folder: Path) -> None:
 def test_a_kernel_of_another_version_is_not_used(
     folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(Library, "interface", Library.interface + 1)
+    newer = replace(module.KERNEL, interface=module.KERNEL.interface + 1)
+    monkeypatch.setattr(module, "KERNEL", newer)
     with pytest.raises(NativeError, match="expected version"):
         library()
 

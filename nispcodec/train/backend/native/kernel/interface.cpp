@@ -2,7 +2,7 @@
 //
 // Nothing here throws: what makes an object returns null when there is no memory for it.
 
-#define EXPORTED extern "C" __attribute__((visibility("default")))
+#include "../../../../core/kernel/exports.h"
 
 #include <memory>
 
@@ -47,23 +47,6 @@ int32_t succeeds(Body body) noexcept {
 EXPORTED int32_t nisp_version() { return 1; }
 
 EXPORTED int32_t nisp_vector_length() { return nisp::VECTOR_LENGTH; }
-
-// The best instruction set of this processor: x86-64-v2, -v3, -v4; 0 where there is nothing to say.
-EXPORTED int32_t nisp_best_level() {
-#if defined(__x86_64__)
-    __builtin_cpu_init();
-    if (!__builtin_cpu_supports("sse4.2") || !__builtin_cpu_supports("popcnt")) return 0;
-    if (!__builtin_cpu_supports("avx2") || !__builtin_cpu_supports("fma") || !__builtin_cpu_supports("bmi2"))
-        return 2;
-    for (bool there : {__builtin_cpu_supports("avx512f") != 0, __builtin_cpu_supports("avx512bw") != 0,
-                       __builtin_cpu_supports("avx512cd") != 0, __builtin_cpu_supports("avx512dq") != 0,
-                       __builtin_cpu_supports("avx512vl") != 0})
-        if (!there) return 3;
-    return 4;
-#else
-    return 0;
-#endif
-}
 
 // What steps are measured against: `rounds` times PEAK_SUMS multiplications and additions of vectors
 // that nothing but the arithmetic units holds up. Returns how many of floats that were.
