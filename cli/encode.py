@@ -33,7 +33,7 @@ LARGEST_NETWORKS = 1_000_000
 """Bytes of a file besides its textures: more than any preset writes."""
 
 
-@subcommand("encode", "Fit networks to a mesh and write a .nisp file.")
+@subcommand("encode", "Write a mesh as a .nisp file.")
 @click.argument("mesh", type=click.Path(path_type=Path))
 @output_option(OutputFile(nisp_suffix))
 @click.option(
@@ -103,7 +103,7 @@ def command(
     as_json: bool,
     **how: Any,
 ) -> None:
-    """Fit networks to MESH (.obj .gltf .glb .ply .stl .off) and write them.
+    """Write MESH (.obj .gltf .glb .ply .stl .off) as networks or triangles, what is smaller.
 
     An earlier output of the same name is replaced; any other file only with --force.
 
@@ -120,12 +120,7 @@ def command(
     asset = _loaded(mesh, unwrap)
     warn(asset.warnings)
     _expect_possible(asset, config, output)
-    found: list[str] = []
-    try:
-        with shown("encode", progress, quiet) as listen:
-            model = nispcodec.encode(asset, config, progress=_with_warnings(listen, found))
-    finally:
-        warn(found)
+    model, found = _encoded(asset, config, progress, quiet)
     asset = replace(asset, warnings=(*asset.warnings, *found))
     nispcodec.save(model, output)
     report = _report(model, asset, mesh, output, time.monotonic() - started)
@@ -133,6 +128,20 @@ def command(
         print_json(report)
     else:
         _print_report(report)
+
+
+def _encoded(
+    asset: TexturedMesh, config: EncodeConfig, progress: str, quiet: bool
+) -> tuple[NispModel, list[str]]:
+    """The model, and what was warned of, which is said at the end whatever happens."""
+    import nispcodec
+
+    found: list[str] = []
+    try:
+        with shown("encode", progress, quiet) as listen:
+            return nispcodec.encode(asset, config, progress=_with_warnings(listen, found)), found
+    finally:
+        warn(found)
 
 
 def _with_warnings(listen: Listener, found: list[str]) -> Listener:

@@ -135,7 +135,7 @@ STRUCTURAL = {
     "nispcodec/geometry/z_order.py APART",
     "nispcodec/geometry/z_order.py BITS",
     "nispcodec/simplify/closest.py FLAT",
-    "nispcodec/simplify/collapse.py PRUNE",
+    "nispcodec/simplify/meshoptimizer_call.py PRUNE",
     "nispcodec/simplify/copy_search.py KEPT",
     "nispcodec/simplify/copy_search.py TURNED",
 }

@@ -72,11 +72,6 @@ class PlacedMeshes:
         """(k,) bool: whether a chart has texture coordinates."""
         return self.triangles.chart_has_uv
 
-    @property
-    def face_normals(self) -> Float64Array:
-        """(f, 3): unit, as the corners turn; 0 for a triangle without area."""
-        return self._normals.faces
-
     def closest(self, points: FloatArray, charts: IntArray | None = None) -> Closest:
         """The closest point to each; with charts (n,) the closest on the chart of each.
 

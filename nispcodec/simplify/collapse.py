@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import ctypes
 from dataclasses import replace
 
 import numpy as np
@@ -11,10 +10,8 @@ from nispcodec.core.arrays import Float64Array, Int64Array
 from nispcodec.core.connectivity import cell_ids
 from nispcodec.core.extras import require
 from nispcodec.simplify.config import CollapseConfig
+from nispcodec.simplify.meshoptimizer_call import PRUNE, fewer_triangles
 from nispcodec.simplify.triangles import Triangles, joined
-
-PRUNE = 8
-"""The library's option to drop bodies that are smaller than the error."""
 
 
 def collapsed(
@@ -46,27 +43,18 @@ def _simplified(
     triangles: Triangles, faces: int, options: int, config: CollapseConfig
 ) -> Triangles | None:
     """None where no triangle is left."""
-    from meshoptimizer import simplify_with_attributes
-
-    _declare()
     corners = cell_ids(triangles.patches[:, None], triangles.faces, triangles.uv_faces)
     at = np.zeros(int(corners.max()) + 1, np.int64)
     at[corners] = np.arange(corners.size).reshape(corners.shape)
-    positions = triangles.corners.reshape(-1, 3)[at]
-    extent = np.ptp(positions, axis=0).max()
-    indices = np.empty(corners.size, dtype=np.uint32)
-    count = simplify_with_attributes(
-        indices,
-        corners.ravel().astype(np.uint32),
-        ((positions - positions.min(axis=0)) / extent).astype(np.float32),
-        _attributes(triangles)[at].astype(np.float32),
-        np.full(2, config.uv_weight, dtype=np.float32),
-        target_index_count=3 * faces,
-        target_error=1.0,
-        options=options,
+    found = fewer_triangles(
+        corners,
+        triangles.corners.reshape(-1, 3)[at],
+        _attributes(triangles)[at],
+        config.uv_weight,
+        faces,
+        options,
     )
-    kept = at[indices[:count].astype(np.int64)].reshape(-1, 3)
-    return _rebuilt(triangles, kept) if count else None
+    return _rebuilt(triangles, at[found]) if len(found) else None
 
 
 def _attributes(triangles: Triangles) -> Float64Array:
@@ -95,16 +83,3 @@ def _lost(before: Triangles, after: Triangles) -> float:
 def _area(triangles: Triangles) -> float:
     a, b, c = np.moveaxis(triangles.corners, 1, 0)
     return max(float(np.linalg.norm(np.cross(b - a, c - a), axis=1).sum()), np.finfo(float).tiny)
-
-
-def _declare() -> None:
-    # The binding forgets to declare this one function: without it, the call crashes.
-    from meshoptimizer._loader import lib
-
-    array, size = ctypes.c_void_p, ctypes.c_size_t
-    function = lib.meshopt_simplifyWithAttributes
-    function.restype = size
-    function.argtypes = [
-        array, array, size, array, size, size, array, size, array, size,
-        array, size, ctypes.c_float, ctypes.c_uint, array,
-    ]  # fmt: skip

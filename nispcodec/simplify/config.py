@@ -100,8 +100,7 @@ class LadderConfig:
     """Which candidates are made.
 
     samples       points on each surface that errors are measured with
-    fewest        faces of the first rung
-    rungs         of a ladder for every factor of 256 in faces
+    fewest        faces of the first candidate
     step          of the grid, for a mean distance of 1: fewer faces save as much as fewer bits
     uv_step       of the grid of UVs, for a UV error of 1
     tolerance     mean distance below which rounding need not go, normalized frame
@@ -111,7 +110,6 @@ class LadderConfig:
 
     samples: int = 20000
     fewest: int = 150
-    rungs: float = 8.0
     step: float = 1.8
     uv_step: float = 1.8
     tolerance: float = 5e-5

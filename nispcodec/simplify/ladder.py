@@ -146,15 +146,6 @@ class Simplifier:
         return _bits(extent, self.config.uv_step * uv)
 
 
-def ladder(simplifier: Simplifier) -> list[Candidate]:
-    """Candidates from few faces to all, fewest first; the bits of each by the error it has."""
-    everything = len(simplifier.source.triangles)
-    config = simplifier.config
-    count = max(2, round(config.rungs * np.log2(max(everything / config.fewest, 2)) / 8))
-    wanted = np.geomspace(min(config.fewest, everything), everything, count)
-    return [simplifier.balanced(round(float(faces))) for faces in wanted]
-
-
 def _bits(extent: float, step: float) -> int:
     """The fewest bits whose grid over an extent has at most this step."""
     if extent <= step:

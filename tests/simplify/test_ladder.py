@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from nispcodec.format.mesh import encode
-from nispcodec.simplify.ladder import Simplifier, ladder
+from nispcodec.simplify.ladder import Candidate, Simplifier
 from nispcodec.simplify.triangles import Triangles
 from tests.geometry import shapes
 from tests.simplify.meshes import (
@@ -21,9 +21,17 @@ from tests.simplify.meshes import (
 )
 
 
+def rungs_of(made: Simplifier) -> list[Candidate]:
+    """From few faces to all, each about twice as many."""
+    everything = len(made.source.triangles)
+    fewest = min(made.config.fewest, everything)
+    counts = np.geomspace(fewest, everything, 2 + round(np.log2(everything / fewest)))
+    return [made.balanced(round(float(count))) for count in counts]
+
+
 @pytest.mark.parametrize("triangles", [ball(), bare_ball(), half_dressed_ball(), sheet()])
-def test_a_ladder_goes_from_few_faces_to_all(triangles: Triangles) -> None:
-    rungs = ladder(simplifier(triangles))
+def test_candidates_go_from_few_faces_to_all(triangles: Triangles) -> None:
+    rungs = rungs_of(simplifier(triangles))
     faces = [rung.faces for rung in rungs]
     assert len(rungs) >= 3
     assert faces == sorted(faces)
@@ -35,9 +43,9 @@ def test_a_ladder_goes_from_few_faces_to_all(triangles: Triangles) -> None:
 
 
 @pytest.mark.parametrize("count", [1, 2, 3])
-def test_a_mesh_of_few_faces_has_a_ladder(count: int) -> None:
+def test_a_mesh_of_few_faces_has_candidates(count: int) -> None:
     few = triangles_of(shapes.soup(shapes.cube((-0.5, -0.5, -0.5), 1.0)[:count]))
-    assert [rung.faces for rung in ladder(simplifier(few))][-1] == count
+    assert [rung.faces for rung in rungs_of(simplifier(few))][-1] == count
 
 
 def test_faces_that_are_not_kept_are_not_missed_but_may_be_found() -> None:

@@ -10,6 +10,8 @@ The arithmetic is of integers, exact in doubles of 53 bits.
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
+
 from nispcodec.core.errors import FormatError
 from nispcodec.format.mesh.logistic import SQUASH, STRETCH
 from nispcodec.format.mesh.priors import table
@@ -24,7 +26,7 @@ START = 20000
 PRIORS = table()
 
 
-class BinaryCoder:
+class BinaryCoder(ABC):
     """The part that encoder and decoder share: counters, weights, the calls of all models.
 
     Every method takes the value to encode, of which a decoder takes no notice, and returns the
@@ -83,8 +85,9 @@ class BinaryCoder:
             raise FormatError(SECTION, name, f"below {end}", found)
         return found
 
+    @abstractmethod
     def _code(self, value: int, probability: int) -> int:
-        raise NotImplementedError
+        """One bit, of which a 1 has this probability in 65536ths."""
 
 
 class Encoder(BinaryCoder):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -39,21 +40,16 @@ def code(coder: BinaryCoder, most: int, part: MeshPart | None) -> tuple[MeshPart
     count = number(coder, len(part.faces) if part else 0, most, "faces")
     if count == 0:
         raise FormatError(SECTION, "faces", "at least one", 0)
-    bits = _grid_bits(coder, part.positions[part.faces] if part else None, "position_bits")
-    uv_bits = _grid_bits(coder, _used_uvs(part) if part else None, "uv_bits")
-    step = single(coder, part.step if part else 0.0, slots.STEP, "step")
-    x, y, z = _singles(coder, part.origin if part else NONE, slots.ORIGIN, "origin")
-    su, sv = _singles(coder, part.uv_step if part else NONE[:2], slots.UV_STEP, "uv_step")
-    u, v = _singles(coder, part.uv_origin if part else NONE[:2], slots.UV_ORIGIN, "uv_origin")
+    grids = _code_grids(coder, part)
     surface, given = _surface(coder, count, part)
-    corners, places = _places(coder, surface, bits, given)
+    corners, places = _places(coder, surface, grids.bits, given)
     twin = np.array(surface.twin, np.int64)
     sheet = charts.code_sheets(coder, twin, given)
     seams, creases = edges.code(coder, surface, corners, places, given)
     joined = np.where(seams, -1, twin)
     found = charts.code(coder, joined, given)
     at = [places[vertex] for vertex in corners]
-    uvs, uv_faces = _uvs(coder, joined, found, at, uv_bits, given)
+    uvs, uv_faces = _uvs(coder, joined, found, at, grids.uv_bits, given)
     wanted = part.placements if part else None
     copied, left = placements.code(coder, found, most - count, wanted)
     with located(SECTION, ""):
@@ -67,13 +63,35 @@ def code(coder: BinaryCoder, most: int, part: MeshPart | None) -> tuple[MeshPart
             chart_has_uv=found.has_uv,
             creases=creases.reshape(-1, 3),
             sheet=sheet,
-            step=step,
-            origin=(x, y, z),
-            uv_step=(su, sv),
-            uv_origin=(u, v),
+            step=grids.step,
+            origin=grids.origin,
+            uv_step=grids.uv_step,
+            uv_origin=grids.uv_origin,
             placements=copied,
         )
     return made, left
+
+
+@dataclass(frozen=True)
+class _Grids:
+    """Bits of coordinates, and the spacing and origin of both grids, as `MeshPart` has them."""
+
+    bits: int
+    uv_bits: int
+    step: float
+    origin: tuple[float, float, float]
+    uv_step: tuple[float, float]
+    uv_origin: tuple[float, float]
+
+
+def _code_grids(coder: BinaryCoder, part: MeshPart | None) -> _Grids:
+    bits = _grid_bits(coder, part.positions[part.faces] if part else None, "position_bits")
+    uv_bits = _grid_bits(coder, _used_uvs(part) if part else None, "uv_bits")
+    step = single(coder, part.step if part else 0.0, slots.STEP, "step")
+    x, y, z = _singles(coder, part.origin if part else NONE, slots.ORIGIN, "origin")
+    su, sv = _singles(coder, part.uv_step if part else NONE[:2], slots.UV_STEP, "uv_step")
+    u, v = _singles(coder, part.uv_origin if part else NONE[:2], slots.UV_ORIGIN, "uv_origin")
+    return _Grids(bits, uv_bits, step, (x, y, z), (su, sv), (u, v))
 
 
 def _used_uvs(part: MeshPart) -> Int32Array:
