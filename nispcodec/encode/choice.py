@@ -63,11 +63,11 @@ class Choice:
             return Chosen(field, errors)
         meshes = replace(field, field=None, meshes=found.parts)
         other = own_bytes(meshes)
-        if self._config.target_size and found.errors.distance < errors.distance:
-            return Chosen(meshes, found.errors, size)
-        if not self._config.target_size and other < size:
-            return Chosen(meshes, found.errors, size)
-        return Chosen(field, errors, other)
+        target = self._config.target_size
+        better = other < size
+        if target:
+            better = other <= target and found.errors.distance < errors.distance
+        return Chosen(meshes, found.errors, size) if better else Chosen(field, errors, other)
 
     def triangles(self, document: Callable[[tuple[MeshPart, ...]], Document]) -> Chosen:
         """The asset as triangles, as near as the preset or the target asks.
@@ -100,8 +100,8 @@ class Choice:
         nearest = self._tuning.training.budgets[config.preset].mesh
         if not config.target_size:
             return self._form.best(nearest, self._field_bytes or math.inf)
-        least = self._form.of_size(0.0)
-        besides = own_bytes(document(least.parts)) - least.size
+        fewest = self._form.fewest()
+        besides = own_bytes(document(fewest.parts)) - fewest.size
         found = self._form.of_size(config.target_size - besides)
         if besides + found.size > config.target_size:
             raise NispError(

@@ -125,6 +125,7 @@ class FormConfig:
     distance_weight  of the logarithm of the distance against that of the bytes: halving it is worth
                      a third more bytes
     uv_weight        the same for UV errors
+    least_bits       of a coordinate, where a target size asks for grids that coarse
     size_trials      face counts tried for a target size: each halves what is left, on a log scale
     """
 
@@ -139,6 +140,7 @@ class FormConfig:
     negligible_uv: float = 5e-4
     distance_weight: float = 0.4
     uv_weight: float = 0.15
+    least_bits: int = 5
     size_trials: int = 7
     ladder: LadderConfig = field(default_factory=LadderConfig)
 

@@ -126,16 +126,36 @@ class MeshForm:
     def of_size(self, most_bytes: float) -> Candidate:
         """The nearest candidate found of at most so many bytes; the smallest where none is."""
         self._progress(Progress(stage="triangles"))
+        for whole in reversed(list(self._whole(most_bytes))):
+            if whole.size <= most_bytes:
+                return whole
         few, many = float(self._config.ladder.fewest), float(len(self.simplifier.source.triangles))
-        best = self.simplifier.balanced(round(min(few, many)))
+        best = self.fewest()
         for _ in range(self._config.size_trials):
-            found = self.simplifier.balanced(round(math.sqrt(few * many)))
+            middle = math.sqrt(few * many)
+            found = self.simplifier.balanced(round(middle))
             if found.size > most_bytes:
-                many = math.sqrt(few * many)
+                many = middle
             else:
-                few = math.sqrt(few * many)
+                few = middle
                 best = min(best, found, key=lambda each: each.errors.distance)
-        return best
+        return self._coarser(best, most_bytes)
+
+    def fewest(self) -> Candidate:
+        """The candidate of the fewest faces that are made."""
+        everything = len(self.simplifier.source.triangles)
+        return self.simplifier.balanced(min(self._config.ladder.fewest, everything))
+
+    def _coarser(self, found: Candidate, most_bytes: float) -> Candidate:
+        """About the same faces on coarser grids, until they take at most so many bytes.
+
+        Bodies that are kept whole leave no fewer faces, but bits.
+        """
+        least, faces = self._config.least_bits, min(self._config.ladder.fewest, found.faces)
+        while found.size > most_bytes and max(found.bits, found.uv_bits) > least:
+            bits, uv_bits = (max(each - 1, least) for each in (found.bits, found.uv_bits))
+            found = self.simplifier.candidate(faces, bits, uv_bits)
+        return found
 
     def _cost(self, candidate: Candidate) -> float:
         config, errors = self._config, candidate.errors

@@ -22,8 +22,8 @@ class Goal:
     def excess(self, errors: Errors) -> tuple[float, float]:
         """Logarithms of how many times too large both errors are; at most 0: good enough."""
         tiny = np.finfo(np.float64).tiny
-        found = max(errors.distance, tiny) / self.distance, max(errors.uv, tiny) / self.uv
-        return float(np.log(found[0])), float(np.log(found[1]))
+        far, wrong = errors.distance / self.distance, errors.uv / self.uv
+        return float(np.log(max(far, tiny))), float(np.log(max(wrong, tiny)))
 
     def held_by_uv(self, candidate: Candidate, uneven: float) -> bool:
         """Whether the UVs leave room in the distance: by this much, as a logarithm."""

@@ -14,7 +14,7 @@ from nispcodec.core.document import Document
 from nispcodec.core.errors import FitError, NispError
 from nispcodec.core.mesh_part import MeshPart
 from nispcodec.core.network import NetworkSpec
-from nispcodec.encode.choice import Choice, own_bytes
+from nispcodec.encode.choice import Choice, Chosen, own_bytes
 from nispcodec.encode.config import Tuning
 from nispcodec.encode.mesh_form import coded_bytes
 from nispcodec.simplify.errors import Errors
@@ -106,6 +106,13 @@ def test_to_a_size_the_nearer_form_is_taken() -> None:
         assert bool(chosen.document.meshes) is mesh
 
 
+def test_triangles_over_the_size_are_not_taken_however_near() -> None:
+    form = Told(10.0, of_size=candidate(EXACT))
+    size = own_bytes(as_mesh((PART,)))
+    chosen = choice(form, target_size=size - 1).after_fit(FIELD, OFF)
+    assert (chosen.document, chosen.errors, chosen.other_bytes) == (FIELD, OFF, size)
+
+
 def test_to_an_error_the_smaller_form_is_taken() -> None:
     form = Told(10.0, within=candidate())
     assert choice(form, target_error=0.01).after_fit(FIELD, OFF).document.meshes == (PART,)
@@ -123,10 +130,11 @@ def test_triangles_asked_for_are_as_near_as_the_preset_says() -> None:
 def test_targets_that_triangles_miss_are_errors() -> None:
     with pytest.raises(FitError, match="target error"):
         choice(Told(), geometry="mesh", target_error=1e-6).triangles(as_mesh)
-    small = choice(Told(of_size=candidate()), geometry="mesh", target_size=20)
+    form = Told(of_size=candidate(), fewest=candidate())
+    small = choice(form, geometry="mesh", target_size=20)
     with pytest.raises(NispError, match="target size: expected at least"):
         small.triangles(as_mesh)
-    wide = choice(Told(of_size=candidate()), geometry="mesh", target_size=20_000)
+    wide = choice(form, geometry="mesh", target_size=20_000)
     assert wide.triangles(as_mesh).document.meshes == (PART,)
 
 
