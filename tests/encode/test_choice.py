@@ -14,7 +14,7 @@ from nispcodec.core.document import Document
 from nispcodec.core.errors import FitError, NispError
 from nispcodec.core.mesh_part import MeshPart
 from nispcodec.core.network import NetworkSpec
-from nispcodec.encode.choice import Choice, Chosen, own_bytes
+from nispcodec.encode.choice import Choice, own_bytes
 from nispcodec.encode.config import Tuning
 from nispcodec.encode.mesh_form import coded_bytes
 from nispcodec.simplify.errors import Errors
