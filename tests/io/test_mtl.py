@@ -290,10 +290,60 @@ def test_a_value_that_is_no_finite_number_is_left_out(tmp_path: Path, line: str)
     assert mesh.materials[0] == Material("m")
 
 
-@pytest.mark.parametrize("line", ["map_Kd -bm x w.png", "map_Kd -s on w.png"])
-def test_malformed_options_name_the_line(tmp_path: Path, line: str) -> None:
-    with pytest.raises(MeshError, match=r"a\.mtl:2: expected"):
-        load(tmp_path, line + "\n", w_png=image())
+@pytest.mark.parametrize(
+    ("options", "expected"),
+    [
+        ("-bm x", "numbers after -bm, found 'x'"),
+        ("-s on", "numbers after -s, found 'on'"),
+        ("-o nan 0 -nan(ind)", "numbers after -o, found 'nan 0 -nan(ind)'"),
+        ("-clamp yes", "on or off after -clamp, found 'yes'"),
+        ("-colorspace srgb", "an option of MTL, found '-colorspace'"),
+        ("-mm", "numbers after -mm, found 'my'"),
+        ("-S", "numbers after -s, found 'my'"),
+    ],
+)
+def test_a_malformed_option_costs_itself_alone(tmp_path: Path, options: str, expected: str) -> None:
+    (tmp_path / "my w.png").write_bytes(image())
+    mesh = load(tmp_path, f"Kd 1 0 0\nmap_Kd {options} my w.png\n")
+    assert mesh.warnings == (f"a.mtl:3: expected {expected}: left out",)
+    assert mesh.materials[0].base_color == (1.0, 0.0, 0.0, 1.0)
+    (used,) = mesh.materials[0].maps.values()
+    assert mesh.textures[used.texture].name == "my w.png"
+    assert (used.wrap, used.strength) == (("repeat", "repeat"), 1.0)
+
+
+def test_options_around_a_malformed_one_count(tmp_path: Path) -> None:
+    mesh = load(tmp_path, "norm -clamp on -o x -bm .5 n.png\n", n_png=image())
+    (used,) = mesh.materials[0].maps.values()
+    assert (used.wrap, used.strength) == (("clamp", "clamp"), 0.5)
+    assert len(mesh.warnings) == 1
+
+
+@pytest.mark.parametrize("end", ["", " -clamp on", " -s 2 2", ' ""', " # wood.png"])
+def test_a_map_without_a_name_is_left_out(tmp_path: Path, end: str) -> None:
+    mesh = load(tmp_path, f"Kd 1 0 0\nmap_Kd{end}\n")
+    assert mesh.materials[0] == Material("m", base_color=(1.0, 0.0, 0.0, 1.0))
+    (warning,) = mesh.warnings
+    assert warning.startswith("a.mtl:3:")
+
+
+def test_a_name_may_begin_as_an_option(tmp_path: Path) -> None:
+    (tmp_path / "-wood.png").write_bytes(image())
+    mesh = load(tmp_path, "map_Kd -wood.png\n")
+    assert [texture.name for texture in mesh.textures] == ["-wood.png"]
+    assert mesh.warnings == ()
+
+
+def test_two_numbers_are_no_color(tmp_path: Path) -> None:
+    mesh = load(tmp_path, "Kd 1 0\nPr .5\n")
+    assert mesh.materials[0] == Material("m", roughness=0.5)
+    assert mesh.warnings == ("a.mtl:2: expected 1 or 3 numbers, found '1 0': kd left out",)
+
+
+def test_colors_beyond_one_are_cut_and_said(tmp_path: Path) -> None:
+    mesh = load(tmp_path, "Kd 255 128 0\nillum two\nNs -1\nNi x\n")
+    assert mesh.materials[0].base_color == (1.0, 1.0, 0.0, 1.0)
+    assert mesh.warnings == ("a.mtl:2: expected numbers from 0 to 1, found '255 128 0': cut to it",)
 
 
 WORDS = ["newmtl", "m", "Kd", "d", "Ke", "1", "0", "nan", "spectral", "-halo", "norm", "map_Kd"]

@@ -118,8 +118,6 @@ def test_a_one_number_uv_has_v_zero() -> None:
         ("v 0 0 1e999\n", "a.obj:1: "),
         ("v 0 0\n", "a.obj:1: expected 3"),
         ("v 0 0 zero\n", "found '0 0 zero'"),
-        ("vt nothing 0\n", "a.obj:1: "),
-        ("vt\n", "found 'nothing'"),
         (TRIANGLE + "f 1 2 4\n", "a.obj:4: expected a vertex index up to 3, found 4"),
         (TRIANGLE + "f 1 2 3\nf 1 2 3 9\n", "a.obj:5: expected a vertex index up to 3, found 9"),
         (TRIANGLE + "vt 0 0\nf 1/1 2/1 3/2\n", "a.obj:5: expected a texture coordinate index"),
@@ -179,6 +177,17 @@ def test_a_face_with_unusable_uvs_has_none(tmp_path: Path, vt: str) -> None:
     assert mesh.has_uv.tolist() == [False, True]
     assert mesh.corner_uvs[1].tolist() == [[0, 1], [1, 0], [0, 0]]
     assert "a.obj: texture coordinates of 1 face(s) are no finite numbers" in mesh.warnings[0]
+
+
+@pytest.mark.parametrize("vt", ["vt", "vt a b", "vt .5,.5"])
+def test_texture_coordinates_that_are_no_numbers_cost_their_faces_alone(
+    tmp_path: Path, vt: str
+) -> None:
+    text = TRIANGLE + f"vt 0 0\nvt 1 0\n{vt}\nvt 0 1\nf 1/1 2/2 3/3\nf 3/4 2/2 1/1\n"
+    mesh = load_obj(tmp_path, text)
+    assert mesh.has_uv.tolist() == [False, True]
+    assert mesh.warnings[0].startswith("a.obj: left out texture coordinates")
+    assert mesh.warnings[0].endswith("first in line 6")
 
 
 @pytest.mark.parametrize("names", [" #" * 100_000, " " * 200_000 + "x", "x " * 100_000])

@@ -1,4 +1,4 @@
-"""Wavefront MTL: the statements of a file, not yet understood."""
+"""Wavefront MTL: the statements of a file, checked one by one but not yet understood."""
 
 from __future__ import annotations
 
@@ -10,24 +10,26 @@ from itertools import takewhile
 from nispcodec.core.errors import MeshError
 from nispcodec.io.read import wavefront
 
-_VALUES = ("kd", "ke", "d", "tr", "pr", "pm")
+# Statements of numbers -> how many they may have. Each is a share, from 0 to 1.
+_VALUES = {"kd": (1, 3), "ke": (1, 3), "d": (1,), "tr": (1,), "pr": (1,), "pm": (1,)}
 # Statements of images; so are all that begin with map_.
 _MAPS = ("norm", "bump", "disp", "decal", "refl")
-# Options of image statements -> the largest number of values they take.
+_NUMBERS, _SWITCH, _WORD = "numbers", "on or off", "a word"
+# Options of image statements -> the largest number of values they take, and what these are.
 _OPTIONS = {
-    "-blendu": 1,
-    "-blendv": 1,
-    "-bm": 1,
-    "-boost": 1,
-    "-cc": 1,
-    "-clamp": 1,
-    "-imfchan": 1,
-    "-mm": 2,
-    "-o": 3,
-    "-s": 3,
-    "-t": 3,
-    "-texres": 1,
-    "-type": 1,
+    "-blendu": (1, _SWITCH),
+    "-blendv": (1, _SWITCH),
+    "-bm": (1, _NUMBERS),
+    "-boost": (1, _NUMBERS),
+    "-cc": (1, _SWITCH),
+    "-clamp": (1, _SWITCH),
+    "-imfchan": (1, _WORD),
+    "-mm": (2, _NUMBERS),
+    "-o": (3, _NUMBERS),
+    "-s": (3, _NUMBERS),
+    "-t": (3, _NUMBERS),
+    "-texres": (1, _NUMBERS),
+    "-type": (1, _WORD),
 }
 
 
@@ -57,8 +59,8 @@ class MtlMaterial:
 def parse_mtl(data: bytes, name: str, warnings: list[str]) -> dict[str, MtlMaterial]:
     """The materials of an MTL file by name.
 
-    Values that are no finite numbers are left out, with new `warnings` that name the file `name`
-    and the line.
+    Values and options that make no sense are left out, with new `warnings` that name the file
+    `name`, the line, what was expected and what was found.
     """
     materials: dict[str, MtlMaterial] = {}
     current = MtlMaterial("")
@@ -70,35 +72,74 @@ def parse_mtl(data: bytes, name: str, warnings: list[str]) -> dict[str, MtlMater
             materials[current.name] = current
         elif keyword in _VALUES:
             try:
-                current.values |= _values(keyword, line, place)
+                current.values |= _values(keyword, line, place, warnings)
             except MeshError as why:
                 warnings.append(f"{why}: {keyword} left out")
         elif keyword in _MAPS or keyword.startswith("map_"):
-            current.maps[keyword] = _map_statement(line, place)
+            statement = _map_statement(line, place, warnings)
+            if any(statement.references):
+                current.maps[keyword] = statement
+            else:
+                warnings.append(f"{place}: expected a file name, found nothing: {keyword} left out")
     return materials
 
 
-def _values(keyword: str, line: bytes, place: str) -> dict[str, list[float]]:
+def _values(keyword: str, line: bytes, place: str, warnings: list[str]) -> dict[str, list[float]]:
     words = [word for word in line.split()[1:] if word != b"-halo"]
     if words and words[0] in (b"spectral", b"xyz"):
         return {}
-    return {keyword: wavefront.numbers(words, 1, place)}
+    values = wavefront.numbers(words, 1, place)
+    counts = _VALUES[keyword]
+    if len(values) < counts[-1] and len(values) not in counts:
+        raise MeshError(f"{place}: expected 1 or 3 numbers, found {_shown(words)}")
+    values = values[: counts[-1]]
+    if min(values) < 0 or max(values) > 1:
+        warnings.append(f"{place}: expected numbers from 0 to 1, found {_shown(words)}: cut to it")
+    return {keyword: values}
 
 
-def _map_statement(line: bytes, place: str) -> MapStatement:
+def _shown(words: Sequence[bytes]) -> str:
+    return repr(wavefront.text(b" ".join(words[:8])))
+
+
+def _map_statement(line: bytes, place: str, warnings: list[str]) -> MapStatement:
+    """The statement, without options that make no sense: these may begin the image's name."""
     words = [wavefront.text(word) for word in line.split()]
     options: dict[str, list[str]] = {}
+    names: tuple[str, ...] = ()
     at = 1
-    while at < len(words) and words[at].lower() in _OPTIONS:
-        option = words[at].lower()
-        options[option] = _option_values(words[at + 1 : at + 1 + _OPTIONS[option]])
-        at += 1 + len(options[option])
-    return MapStatement(wavefront.names(line, at), options, place)
+    while at < len(words) and words[at].startswith("-"):
+        option, after = words[at].lower(), words[at + 1 :]
+        most, kind = _OPTIONS.get(option, (1, ""))
+        values = _values_of_option(after[:most], kind)
+        if kind and _are_sound(values, kind):
+            options[option] = values
+            at += 1 + len(values)
+        elif kind or after:
+            names += wavefront.names(line, at if not kind else at + 1)
+            at += 1 + min(len(values), max(len(after) - 1, 0))
+            found = repr(" ".join(values)) if kind else repr(option)
+            wanted = f"{kind} after {option}" if kind else "an option of MTL"
+            warnings.append(f"{place}: expected {wanted}, found {found}: left out")
+        else:
+            break
+    return MapStatement((*names, *wavefront.names(line, at)), options, place)
 
 
-def _option_values(words: Sequence[str]) -> list[str]:
-    """One value of any kind, then numbers: an option may have fewer than it could."""
-    return [*words[:1], *takewhile(is_number, words[1:])]
+def _values_of_option(words: Sequence[str], kind: str) -> list[str]:
+    """The words that stand for an option's values, sound or not."""
+    numbers = list(takewhile(_is_meant_as_number, words)) if kind == _NUMBERS else []
+    return numbers or list(words[:1])
+
+
+def _are_sound(values: Sequence[str], kind: str) -> bool:
+    if kind == _NUMBERS:
+        return bool(values) and all(map(is_number, values))
+    return kind == _WORD or [value.lower() for value in values] in (["on"], ["off"])
+
+
+def _is_meant_as_number(word: str) -> bool:
+    return is_number(word) or wavefront.not_finite([word.encode()])
 
 
 def is_number(word: str) -> bool:

@@ -101,8 +101,13 @@ class _Statements:
         if wavefront.not_finite(words[:2]):
             self.uvs.extend((math.nan, math.nan))
             return
-        values = wavefront.numbers(words, 1, self._place())
-        self.uvs.extend(values[:2] if len(values) > 1 else (values[0], 0.0))
+        try:
+            u, v, *_ = *wavefront.numbers(words[:2], 1, self._place()), 0.0
+        except MeshError:
+            # Unusable, as NaN is: it costs the faces at it their UVs, and not the asset.
+            self._leave_out(f"texture coordinates {wavefront.text(b' '.join(words[:2])[:32])!r}")
+            u = v = math.nan
+        self.uvs.extend((u, v))
 
     def _face(self, line: bytes) -> None:
         words = line.split()[1:]

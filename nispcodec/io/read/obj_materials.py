@@ -15,7 +15,7 @@ from nispcodec.core.slots import SLOT_TABLE
 from nispcodec.io.folder import Folder
 from nispcodec.io.images import TextureShelf, is_gray
 from nispcodec.io.read import wavefront
-from nispcodec.io.read.mtl import MapStatement, MtlMaterial, is_number, parse_mtl
+from nispcodec.io.read.mtl import MapStatement, MtlMaterial, parse_mtl
 from nispcodec.io.read.names import material_name
 
 # Keyword of an image statement -> slot; of two for one slot the first in this list wins.
@@ -74,13 +74,17 @@ class MaterialReader:
     def open_library(self, reference: str, place: str) -> None:
         """Read the MTL file of an `mtllib` statement, which may name several.
 
-        `place` is that of the statement, for warnings. Raises MeshError for a malformed MTL file.
+        `place` is that of the statement, for warnings.
         """
         for path in self._library_paths(reference, place):
             if path in self._libraries:
                 continue
             self._libraries.add(path)
-            found = parse_mtl(self._folder.read(path), path.name, self._warnings)
+            try:
+                found = parse_mtl(self._folder.read(path), path.name, self._warnings)
+            except MeshError as why:
+                self._warnings.append(f"{place}: {why}: left out")
+                continue
             self._known.update(found)
             self._folders.update(dict.fromkeys(found, self._folder.beside(path)))
             for name in found:
@@ -126,10 +130,7 @@ class MaterialReader:
         return next(iter(alike)) if name and len(alike) == 1 else name
 
     def materials(self, names: Sequence[str]) -> tuple[Material, ...]:
-        """One material for each name, in order; at least one.
-
-        Raises MeshError for a malformed option.
-        """
+        """One material for each name, in order; at least one."""
         self._warn_of_unknown([repr(name) for name in names if name and name not in self._known])
         return tuple(self._material(name) for name in names) or (Material(),)
 
@@ -235,7 +236,7 @@ class MaterialReader:
 
     def _warn_of_options(self, statement: MapStatement) -> None:
         for option, values in statement.options.items():
-            if option == "-t" and not all(is_number(each) and not float(each) for each in values):
+            if option == "-t" and any(map(float, values)):
                 self._warn(statement, "-t is not applied: texture coordinates stay")
             elif option in _CHANGING:
                 self._warn(statement, f"{option} is not applied: the image stays")
@@ -253,17 +254,14 @@ class MaterialReader:
 
 
 def _placement(statement: MapStatement) -> Placement:
-    """The -s and -o of a statement. Raises MeshError for values that are no numbers."""
+    """The -s and -o of a statement."""
     (scale_u, scale_v), (u, v) = (_pair(statement, *each) for each in _MOVING.items())
     return Placement((scale_u, scale_v), (u, v))
 
 
 def _pair(statement: MapStatement, option: str, neutral: float) -> tuple[float, float]:
     """Two values of an option: a missing one is neutral."""
-    values = statement.options.get(option, [str(neutral)])
-    if not values or not all(map(is_number, values)):
-        raise MeshError(f"{statement.place}: expected numbers after {option}, found {values!r}")
-    numbers = [*map(float, values), neutral]
+    numbers = [*map(float, statement.options.get(option, ())), neutral, neutral]
     return numbers[0], numbers[1]
 
 
@@ -286,7 +284,4 @@ def _unit(value: float) -> float:
 
 
 def _strength(statement: MapStatement) -> float:
-    values = statement.options.get("-bm", ["1"])
-    if not values or not is_number(values[0]):
-        raise MeshError(f"{statement.place}: expected a number after -bm, found {values!r}")
-    return float(values[0])
+    return float(statement.options.get("-bm", ["1"])[0])
