@@ -62,6 +62,7 @@ __all__ = [
     "encode_many",
     "load",
     "load_mesh",
+    "register_trimesh",
     "render",
     "retexture",
     "save",
@@ -215,6 +216,19 @@ def retexture(
     document, said = retextured(model.document, slot, data, path.name, material)
     warn(said)
     return NispModel(document)
+
+
+def register_trimesh() -> None:
+    """Let `trimesh.load`, `load_scene` and `load_mesh` read `.nisp` files, in this process.
+
+    They take the arguments of `NispModel.to_mesh`: `trimesh.load("model.nisp", faces=20_000)`. The
+    first two give a scene, as for GLB. trimesh looks for no plugins, so that it has to be told.
+    Needs `pip install 'nispcodec[trimesh]'`; raises NispError without.
+    """
+    require("trimesh", extra="trimesh", what_for="reading by trimesh")
+    from nispcodec import trimesh_loader
+
+    trimesh_loader.register()
 
 
 def _mesh(given: object) -> TexturedMesh:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -11,7 +12,11 @@ from nispcodec.core.arrays import Float32Array, Float64Array, Int32Array, IntArr
 from nispcodec.core.asset import TexturedMesh
 from nispcodec.core.document import Document
 from nispcodec.core.errors import QueryError
+from nispcodec.core.extras import require
 from nispcodec.infer.parts import Union
+
+if TYPE_CHECKING:
+    import trimesh
 
 FRAMES = ("world", "normalized")
 FAR = 1e6
@@ -120,6 +125,30 @@ class NispModel:
         from nispcodec.extract.meshing import textured_mesh
 
         return textured_mesh(self.document, resolution, faces, error, keep_spurious)[0]
+
+    def to_trimesh(
+        self,
+        resolution: int | None = None,
+        faces: int | None = None,
+        error: float | None = None,
+        keep_spurious: bool = False,
+    ) -> trimesh.Scene:
+        """The surface as a trimesh scene: for each material a `Trimesh` with UVs and PBR material.
+
+        Arguments and frame are those of `to_mesh`; vertices are split at seams; trimesh rounds the
+        factors of base colors to 8 bits. Warnings of that mesh, and what trimesh has no place for,
+        are warned of as NispWarning. Needs `pip install 'nispcodec[trimesh]'`; raises
+        NispError without, MeshError for a texture that does not decode.
+        """
+        require("trimesh", extra="trimesh", what_for="a trimesh scene")
+        from trimesh import Scene, Trimesh
+        from trimesh.parent import Geometry
+
+        from nispcodec.io.write.trimesh_geometry import trimesh_arguments
+
+        arguments = trimesh_arguments(self.to_mesh(resolution, faces, error, keep_spurious))
+        made: dict[str, Geometry] = {name: Trimesh(**each) for name, each in arguments.items()}
+        return Scene(made)
 
     def _base_color(self, key: int, uvs: Float32Array) -> Float32Array:
         from nispcodec.core.texture import base_color

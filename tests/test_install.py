@@ -22,7 +22,7 @@ ROOT = Path(__file__).parent.parent
 PYPROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
 EXTRAS = PYPROJECT["project"]["optional-dependencies"]
 # Not one of these is there after a plain `pip install nispcodec`.
-ABSENT = ("torch", "scipy", "igl", "embreex", "skimage", "xatlas", "rich")
+ABSENT = ("torch", "scipy", "igl", "embreex", "skimage", "xatlas", "rich", "trimesh")
 # Whatever stands here runs without them; encoding and what it needs does not.
 PLAIN = ("core", "io", "format", "infer", "extract", "edit", "procedural", "metrics", "render")
 
@@ -132,7 +132,7 @@ def test_an_extra_that_is_asked_for_has_what_is_needed() -> None:
 
 
 def test_all_is_every_extra_of_the_library() -> None:
-    assert EXTRAS["all"] == ["nispcodec[encode,torch,render,unwrap,gltf,remote]"]
+    assert EXTRAS["all"] == ["nispcodec[encode,torch,render,unwrap,gltf,trimesh,remote]"]
 
 
 def test_what_is_there_is_not_complained_about() -> None:

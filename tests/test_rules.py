@@ -16,7 +16,7 @@ ROOT = Path(__file__).parent.parent
 RULES: dict[str, tuple[set[str], set[str]]] = {
     # A mesh knows how to save itself.
     "core": ({"numpy", "scipy", "PIL"}, {"io"}),
-    "io": ({"numpy", "PIL", "DracoPy", "meshoptimizer", "opengl_basisu"}, {"core"}),
+    "io": ({"numpy", "PIL", "DracoPy", "meshoptimizer", "opengl_basisu", "trimesh"}, {"core"}),
     "geometry": ({"numpy", "scipy", "igl"}, {"core"}),
     "dataset": ({"numpy", "scipy"}, {"core", "geometry"}),
     "simplify": (
@@ -27,7 +27,9 @@ RULES: dict[str, tuple[set[str], set[str]]] = {
     "format": ({"numpy", "msgpack", "zstandard"}, {"core"}),
     "infer": ({"numpy", "threadpoolctl"}, {"core"}),
     "extract": ({"numpy", "fast_simplification"}, {"core", "infer"}),
-    "model": ({"numpy"}, {"core", "infer", "extract"}),
+    # A model hands itself to trimesh.
+    "model": ({"numpy", "trimesh"}, {"core", "infer", "extract", "io"}),
+    "trimesh_loader": ({"trimesh"}, {"core", "io", "format", "model"}),
     "metrics": ({"numpy", "skimage", "igl"}, {"core"}),
     "render": (
         {"numpy", "scipy", "embreex", "PIL"},
@@ -277,6 +279,7 @@ TESTED_ELSEWHERE = {
     "io/save.py": "io/test_writers.py",
     "io/write/glb.py": "io/test_writers.py",
     "io/write/losses.py": "io/test_writers.py",
+    "io/write/trimesh_geometry.py": "test_trimesh_loader.py",
     "io/write/vertices.py": "io/test_writers.py",
     # Numbers that are known for the same small shapes.
     "metrics/parameterization.py": "metrics/test_parts.py",

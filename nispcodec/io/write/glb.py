@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import struct
-from collections.abc import Iterable
 from io import BytesIO
 from typing import Any
 
@@ -14,7 +13,7 @@ from nispcodec.core.arrays import AnyArray, Float32Array, IndexArray
 from nispcodec.core.asset import Material, Texture, TexturedMesh, TextureMap
 from nispcodec.core.slots import BY_NAME, Slot
 from nispcodec.core.texture import srgb_to_linear
-from nispcodec.io.write.vertices import origin, split_vertices, vertex_normals
+from nispcodec.io.write.vertices import groups, origin, split_vertices, vertex_normals
 
 Json = dict[str, Any]
 
@@ -50,7 +49,7 @@ class _Builder:
         normals = vertex_normals(mesh)
         primitives = [
             self.primitive(mesh, faces, normals, material, has_uv)
-            for material, has_uv, faces in _groups(mesh)
+            for material, has_uv, faces in groups(mesh)
         ]
         self.tree["scene"] = self.add("scenes", {"nodes": [0]})
         node: Json = {"mesh": 0, "name": mesh.name}
@@ -159,12 +158,6 @@ class _Builder:
             item = {"name": texture.name, "mimeType": mime, "bufferView": self.view(data)}
             self.images[number] = self.add("images", item)
         return self.images[number]
-
-
-def _groups(mesh: TexturedMesh) -> Iterable[tuple[int, bool, IndexArray]]:
-    keys = mesh.face_materials * 2 + mesh.has_uv
-    for key in np.unique(keys).tolist():
-        yield key // 2, bool(key % 2), np.flatnonzero(keys == key)
 
 
 def _strength(slot: Slot, used: TextureMap) -> Json:

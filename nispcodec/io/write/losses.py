@@ -40,6 +40,14 @@ def stl_losses(mesh: TexturedMesh) -> Iterator[str]:
         yield "texture coordinates, materials and images: STL holds geometry alone"
 
 
+def trimesh_losses(mesh: TexturedMesh) -> Iterator[str]:
+    """Those of `NispModel.to_trimesh`."""
+    used = [each for made in mesh.materials for each in made.maps.values()]
+    if any(each.strength != 1 for each in used):
+        yield "strengths of maps: trimesh has none"
+    yield from _sampling(mesh.materials, {("repeat", "repeat")}, "trimesh repeats images")
+
+
 def _maps(mesh: TexturedMesh, held: list[str]) -> Iterator[str]:
     used = {slot for each in mesh.materials for slot in each.maps}
     lost = [slot for slot in SLOTS if slot in used and slot not in held]

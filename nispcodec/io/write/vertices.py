@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -27,6 +28,13 @@ class Vertices:
     uvs: Float32Array
     faces: Uint32Array
     sources: Int64Array
+
+
+def groups(mesh: TexturedMesh) -> Iterator[tuple[int, bool, IndexArray]]:
+    """Each material that faces have, whether they have UVs, and those faces: into mesh.faces."""
+    keys = mesh.face_materials * 2 + mesh.has_uv
+    for key in np.unique(keys).tolist():
+        yield key // 2, bool(key % 2), np.flatnonzero(keys == key)
 
 
 def split_vertices(mesh: TexturedMesh, faces: IndexArray) -> Vertices:
