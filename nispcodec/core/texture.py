@@ -263,8 +263,11 @@ def linear_to_srgb(values: Float32Array) -> Float32Array:
 
 def _to_rgba(image: PIL.Image.Image) -> Float32Array:
     if image.mode.startswith("I"):  # Pillow clips 16-bit gray to 255 when converting
-        gray = np.asarray(image, dtype=np.float32)[..., None] / np.float32(65535)
-        return np.concatenate([gray, gray, gray, np.ones_like(gray)], axis=2)
+        values = np.asarray(image)[..., None]
+        # The one value that is transparent, as for gray of 8 bits.
+        alpha = (values != image.info.get("transparency", -1)).astype(np.float32)
+        gray = values.astype(np.float32) / np.float32(65535)
+        return np.concatenate([gray, gray, gray, alpha], axis=2)
     return np.asarray(image.convert("RGBA"), dtype=np.float32) / np.float32(255)
 
 

@@ -74,5 +74,10 @@ def _entry(folder: Path, name: str) -> Path | None:
     return next((entry for entry in entries if alike(entry.name, name)), None)
 
 
+def composed(name: str) -> str:
+    """The name with accents and letters as one character each, as most tools write it."""
+    return unicodedata.normalize("NFC", name)
+
+
 def _alike(name: str) -> str:
-    return unicodedata.normalize("NFC", unicodedata.normalize("NFC", name).casefold())
+    return composed(composed(name).casefold())

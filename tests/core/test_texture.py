@@ -127,6 +127,13 @@ def test_decode_16_bit_gray() -> None:
     np.testing.assert_allclose(image[0, 1], [0.25, 0.25, 0.25, 1], atol=1e-4)
 
 
+def test_the_transparent_value_of_16_bit_gray() -> None:
+    gray = PIL.Image.fromarray(np.array([[7, 40_000]], np.uint16))
+    file = io.BytesIO()
+    gray.save(file, "PNG", transparency=7)
+    assert decode_image(Texture("a.png", file.getvalue(), "image/png"))[0, :, 3].tolist() == [0, 1]
+
+
 def test_decode_cmyk_jpeg() -> None:
     image = decode_image(encoded(PIL.Image.new("CMYK", (2, 2), (0, 0, 0, 0)), "JPEG"))
     np.testing.assert_allclose(image, 1, atol=0.02)

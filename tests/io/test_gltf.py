@@ -3,6 +3,7 @@ from __future__ import annotations
 import base64
 import json
 import math
+import struct
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -12,7 +13,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from nispcodec.core.asset import TexturedMesh
+from nispcodec.core.asset import Material, TexturedMesh
 from nispcodec.core.errors import MeshError
 from nispcodec.io.folder import Folder
 from nispcodec.io.load import load_mesh
@@ -540,14 +541,10 @@ def broken(change: str) -> bytes:
         "two indices": lambda: primitive.update(indices=gltf.accessor([0, 1], "u1")),
         "nan": lambda: primitive["attributes"].update(
             POSITION=gltf.accessor([*CORNERS[:2], (0, math.nan, 0)])),
-        "uv count": lambda: primitive["attributes"].update(TEXCOORD_0=gltf.accessor(UVS[:2])),
         "cycle": lambda: gltf.json["nodes"][0].update(children=[0]),
         "children": lambda: gltf.json["nodes"][0].update(children="all"),
         "scene": lambda: gltf.json.update(scene=3),
         "matrix": lambda: gltf.json["nodes"][0].update(matrix=[1, 2, 3]),
-        "alpha": lambda: gltf.json["materials"][0].update(alphaMode="FOG"),
-        "wrap": lambda: [gltf.json.update(samplers=[{"wrapS": 1}]),
-                         gltf.json["textures"][0].update(sampler=0)],
     }  # fmt: skip
     spoil[change]()
     return gltf.glb()
@@ -572,13 +569,10 @@ def broken(change: str) -> bytes:
         ("index", "primitives[0]: expected vertex indices below 3, found 3"),
         ("two indices", "expected a multiple of 3 indices, found 2"),
         ("nan", "accessors[3]: expected finite numbers in element 2"),
-        ("uv count", "expected 3 texture coordinates, found 2"),
         ("cycle", "nodes[0]: expected a node with one parent"),
         ("children", "expected node indices in children"),
         ("scene", "scenes: expected an index below 1, found 3"),
         ("matrix", "nodes[0].matrix: expected 16 numbers"),
-        ("alpha", "expected an alphaMode"),
-        ("wrap", "expected wraps of"),
     ],
 )
 def test_errors_name_the_place(change: str, expected: str) -> None:
@@ -586,6 +580,99 @@ def test_errors_name_the_place(change: str, expected: str) -> None:
         read_gltf(broken(change), "a.glb", NOWHERE)
     assert str(caught.value).startswith("a.glb: ")
     assert expected in str(caught.value)
+
+
+def test_texture_coordinates_that_are_too_few_cost_themselves_alone(tmp_path: Path) -> None:
+    gltf = textured()
+    primitive = gltf.json["meshes"][0]["primitives"][0]
+    primitive["attributes"]["TEXCOORD_0"] = gltf.accessor(UVS[:2])
+    mesh = gltf.load(tmp_path)
+    assert not mesh.has_uv.any()
+    assert "attributes: expected 3 texture coordinates, found 2: left out" in mesh.warnings[0]
+
+
+@pytest.mark.parametrize(
+    ("spoilt", "said"),
+    [
+        ({"alphaMode": "FOG"}, "materials[0]: expected an alphaMode, found 'fog'"),
+        ({"emissiveFactor": [1, 1]}, "emissiveFactor: expected 3 numbers"),
+        ({"doubleSided": "yes"}, "doubleSided: expected a boolean"),
+        ({"alphaCutoff": "half"}, "alphaCutoff: expected a number"),
+        ({"occlusionTexture": {"index": 9}}, "textures: expected an index below"),
+    ],
+)
+def test_a_malformed_member_of_a_material_costs_itself_alone(
+    tmp_path: Path, spoilt: dict[str, Any], said: str
+) -> None:
+    gltf = textured()
+    whole = gltf.load(tmp_path).materials[0]
+    gltf.json["materials"][0].update(spoilt)
+    mesh = gltf.load(tmp_path)
+    assert said in " ".join(mesh.warnings)
+    assert mesh.materials[0].maps["base_color"] == whole.maps["base_color"]
+    assert mesh.materials[0].base_color == whole.base_color
+    assert mesh.materials[0].alpha_mode == "opaque"
+
+
+@pytest.mark.parametrize(
+    ("factors", "said"),
+    [
+        ({"baseColorFactor": [1, 0, 0]}, "baseColorFactor: expected 4 numbers"),
+        ({"roughnessFactor": "rough"}, "roughnessFactor: expected a number"),
+    ],
+)
+def test_a_malformed_factor_costs_itself_alone(
+    tmp_path: Path, factors: dict[str, Any], said: str
+) -> None:
+    gltf = textured()
+    gltf.json["materials"][0]["pbrMetallicRoughness"] = {"metallicFactor": 0.25, **factors}
+    mesh = gltf.load(tmp_path)
+    assert said in mesh.warnings[0]
+    made = mesh.materials[0]
+    assert (made.base_color, made.metallic, made.roughness) == ((1.0, 1.0, 1.0, 1.0), 0.25, 1.0)
+
+
+def test_a_malformed_sampler_repeats(tmp_path: Path) -> None:
+    gltf = textured()
+    gltf.json.update(samplers=[{"wrapS": 1}])
+    gltf.json["textures"][0].update(sampler=0)
+    mesh = gltf.load(tmp_path)
+    assert "samplers[0]: expected wraps of" in mesh.warnings[0]
+    assert mesh.materials[0].maps["base_color"].wrap == ("repeat", "repeat")
+
+
+def test_a_material_that_is_not_there_is_the_default_one(tmp_path: Path) -> None:
+    gltf = textured()
+    gltf.json["meshes"][0]["primitives"][0]["material"] = 7
+    mesh = gltf.load(tmp_path)
+    assert mesh.materials == (Material(metallic=1.0),)
+    assert "materials: expected an index below" in mesh.warnings[0]
+
+
+@pytest.mark.parametrize("counted", [False, True])
+def test_bytes_after_the_last_chunk_are_left_out(counted: bool) -> None:
+    data = one_triangle().glb() + b"appended by someone"
+    if counted:
+        data = data[:8] + struct.pack("<I", len(data)) + data[12:]
+    mesh = read_gltf(data, "a.glb", NOWHERE)
+    assert len(mesh.faces) == 1
+    assert mesh.warnings == ("a.glb: left out 19 bytes after the last chunk",)
+
+
+@pytest.mark.parametrize("more", [-4, 4])
+def test_a_wrong_length_in_the_header_is_said(more: int) -> None:
+    data = one_triangle().glb()
+    data = data[:8] + struct.pack("<I", len(data) + more) + data[12:]
+    mesh = read_gltf(data, "a.glb", NOWHERE)
+    assert len(mesh.faces) == 1
+    assert "bytes as in the header" in mesh.warnings[0]
+
+
+def test_a_streamed_binary_chunk_reaches_to_the_end() -> None:
+    data = bytearray(one_triangle().glb())
+    (text,) = struct.unpack_from("<I", data, 12)
+    struct.pack_into("<I", data, 20 + text, 0)
+    assert len(read_gltf(bytes(data), "a.glb", NOWHERE).faces) == 1
 
 
 @pytest.mark.parametrize(

@@ -141,7 +141,7 @@ def test_octahedral_and_quaternion_filters() -> None:
 
 
 def buffers_of(gltf: Gltf) -> gltf_buffers.Buffers:
-    text, binary = gltf_buffers.split_glb(gltf.glb(), "a.glb")
+    text, binary = gltf_buffers.split_glb(gltf.glb(), "a.glb", [])
     return gltf_buffers.Buffers(parse_json(text, "a.glb"), binary, NOWHERE)
 
 

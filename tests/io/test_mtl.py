@@ -3,6 +3,7 @@ from __future__ import annotations
 import unicodedata
 from functools import partial
 from pathlib import Path
+from typing import Literal
 
 import pytest
 from hypothesis import given
@@ -338,6 +339,36 @@ def test_two_numbers_are_no_color(tmp_path: Path) -> None:
     mesh = load(tmp_path, "Kd 1 0\nPr .5\n")
     assert mesh.materials[0] == Material("m", roughness=0.5)
     assert mesh.warnings == ("a.mtl:2: expected 1 or 3 numbers, found '1 0': kd left out",)
+
+
+@pytest.mark.parametrize("line", ["Kd spectral wood.rfl", "Kd xyz .5 .5 .5"])
+def test_colors_of_other_kinds_are_left_out(tmp_path: Path, line: str) -> None:
+    mesh = load(tmp_path, line)
+    assert mesh.materials[0].base_color == (1.0, 1.0, 1.0, 1.0)
+    assert "a.mtl:2: expected a color in RGB" in mesh.warnings[0]
+
+
+def test_a_material_that_is_there_twice(tmp_path: Path) -> None:
+    mesh = load(tmp_path, "Kd 1 0 0\nnewmtl m\nKd 0 1 0\n")
+    assert mesh.materials[0].base_color[:3] == (0.0, 1.0, 0.0)
+    assert mesh.warnings == ("a.mtl:3: material 'm' is there twice: the last counts",)
+
+
+@pytest.mark.parametrize("form", ["NFC", "NFD"])
+def test_accents_of_materials_are_composed_either_way(
+    tmp_path: Path, form: Literal["NFC", "NFD"]
+) -> None:
+    other: Literal["NFC", "NFD"] = "NFD" if form == "NFC" else "NFC"
+    names = unicodedata.normalize(form, "Öl"), unicodedata.normalize(other, "Öl")
+    text = OBJ.replace("usemtl m", f"usemtl {names[0]}")
+    mesh = load_obj(tmp_path, text, a_mtl=f"newmtl {names[1]}\nKd 1 0 0\n")
+    assert mesh.materials[0].base_color[:3] == (1.0, 0.0, 0.0)
+    assert mesh.warnings == ()
+
+
+def test_words_that_are_no_options_take_no_time(tmp_path: Path) -> None:
+    mesh = load(tmp_path, "map_Kd " + "-x " * 50_000 + "w.png\n", w_png=image())
+    assert len(mesh.warnings) < 20
 
 
 def test_colors_beyond_one_are_cut_and_said(tmp_path: Path) -> None:

@@ -187,6 +187,31 @@ def test_errors_name_the_place(data: bytes, expected: str) -> None:
     assert expected in str(caught.value)
 
 
+def test_texture_coordinates_that_do_not_fit_cost_their_face_alone() -> None:
+    header = VERTEX + FACE.format(2) + "property list uchar float texcoord\n"
+    mesh = read(text(header, SQUARE + "3 0 1 2 4 9 9 9 9\n3 0 2 3 6 0 0 1 0 1 1\n"))
+    assert mesh.has_uv.tolist() == [False, True]
+    assert mesh.corner_uvs[1].tolist() == [[0, 0], [1, 0], [1, 1]]
+    assert "face 0: expected 6 texture coordinates, found 4" in mesh.warnings[0]
+
+
+def test_a_texture_that_is_not_there_costs_its_face_alone(tmp_path: Path) -> None:
+    (tmp_path / "t.png").write_bytes(image())
+    header = f"comment TextureFile t.png\n{VERTEX}{FACE.format(2)}property int texnumber\n"
+    mesh = read(text(header, SQUARE + "3 0 1 2 7\n3 0 2 3 0\n"), Folder(tmp_path))
+    assert [bool(mesh.materials[each].maps) for each in mesh.face_materials] == [False, True]
+    assert "face 0: expected a texnumber below 1, found 7" in mesh.warnings[0]
+
+
+def test_what_else_a_file_holds_is_said() -> None:
+    strips = "element tristrips 1\nproperty list int int vertex_indices\n"
+    mesh = read(text(VERTEX + FACE.format(1) + strips, SQUARE + "3 0 1 2\n3 0 2 3\n"))
+    assert mesh.warnings == ("a.ply: left out element 'tristrips'",)
+    header = VERTEX + "property uchar r\n" + FACE.format(1)
+    mesh = read(text(header, SQUARE.replace("\n", " 9\n") + "3 0 1 2\n"))
+    assert mesh.warnings == ("a.ply: left out vertex colors",)
+
+
 @given(st.binary(max_size=60), st.integers(0, 400), st.sampled_from(["ascii", "binary_big_endian"]))
 def test_any_bytes_give_a_mesh_or_a_mesh_error(noise: bytes, at: int, format: str) -> None:
     whole = text(VERTEX + FACE.format(1), SQUARE + "3 0 1 2\n", format)

@@ -154,6 +154,10 @@ def test_what_off_loses_is_said(data: bytes, what: str) -> None:
     assert mesh.warnings == (f"a.off: left out {what}",)
 
 
+def test_the_keyword_of_off_may_be_missing() -> None:
+    assert off(OFF.replace(b"OFF\n", b"")).corners.tolist() == off(OFF).corners.tolist()
+
+
 def test_normals_of_off_are_no_loss() -> None:
     assert off(OFF.replace(b"OFF", b"NOFF").replace(b" 0\n", b" 0 0 0 1\n")).warnings == ()
 

@@ -42,10 +42,11 @@ def read_gltf(data: bytes, name: str, folder: Folder) -> TexturedMesh:
     `name` and the JSON path, for whatever glTF 2.0 does not allow; NispError for a compressed file
     without the extra `gltf`.
     """
-    text, binary = split_glb(data, name)
+    warnings: list[str] = []
+    text, binary = split_glb(data, name, warnings)
     root = parse_json(text, name)
     _expect_readable(root)
-    warnings = _things_left_out(root)
+    warnings += _things_left_out(root)
     buffers = Buffers(root, binary, folder)
     materials = GltfMaterials(root, buffers, folder, warnings)
     scene = _Scene(buffers, materials, DracoPrimitives(root, buffers, warnings), warnings)
@@ -209,7 +210,11 @@ class _Scene:
             return None
         stored = self._buffers.numbers(accessor, 2, finite=False)
         if len(stored) != count:
-            attributes.fail(f"{count} texture coordinates", len(stored))
+            self._warn(
+                f"{attributes.place}: expected {count} texture coordinates, found {len(stored)}: "
+                f"left out"
+            )
+            return None
         key = (accessor, source)
         if key not in self._uvs.starts:
             uvs = source.apply(stored)

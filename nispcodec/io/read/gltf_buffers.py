@@ -30,10 +30,11 @@ _JSON_CHUNK, _BINARY_CHUNK = 0x4E4F534A, 0x004E4942
 _MOST_ZEROS = 10_000_000
 
 
-def split_glb(data: bytes, name: str) -> tuple[bytes, bytes | None]:
+def split_glb(data: bytes, name: str, warnings: list[str]) -> tuple[bytes, bytes | None]:
     """The JSON text and the binary chunk, if any, of a GLB file; other data is JSON text itself.
 
-    Raises MeshError, naming the file `name`, for a malformed container.
+    What does not fit the container but can be read past is said in new `warnings`. Raises
+    MeshError, naming the file `name`, for a container that is malformed otherwise.
     """
     if not data.startswith(b"glTF"):
         return data, None
@@ -42,10 +43,12 @@ def split_glb(data: bytes, name: str) -> tuple[bytes, bytes | None]:
     version, length = struct.unpack_from("<II", data, 4)
     if version != 2:
         raise MeshError(f"{name}: expected GLB version 2, found {version}")
-    length = length or len(data)  # which those who stream do not know when they write it
-    if length > len(data):
-        raise MeshError(f"{name}: expected {length} bytes, found {len(data)}: file cut short")
-    chunks = _chunks(data[:length], name)
+    chunks, end = _chunks(data, name)
+    # Those who stream do not know it when they write it.
+    if length and not end <= length <= len(data):
+        warnings.append(f"{name}: expected {length} bytes as in the header, found {len(data)}")
+    if end < len(data):
+        warnings.append(f"{name}: left out {len(data) - end} bytes after the last chunk")
     if not chunks or chunks[0][0] != _JSON_CHUNK:
         found = f"chunk type {chunks[0][0]:#x}" if chunks else "no chunk"
         raise MeshError(f"{name}: expected a JSON chunk first, found {found}")
@@ -53,18 +56,24 @@ def split_glb(data: bytes, name: str) -> tuple[bytes, bytes | None]:
     return chunks[0][1], binary
 
 
-def _chunks(data: bytes, name: str) -> list[tuple[int, bytes]]:
-    chunks, at = [], 12
+def _chunks(data: bytes, name: str) -> tuple[list[tuple[int, bytes]], int]:
+    """The kind and bytes of each chunk, and where the last one ends."""
+    chunks, at = list[tuple[int, bytes]](), 12
     while at + 8 <= len(data):
         length, kind = struct.unpack_from("<II", data, at)
-        at += 8
-        if length > len(data) - at:
+        left = len(data) - at - 8
+        if kind == _BINARY_CHUNK and length == 0:
+            length = left  # streamed: nothing but padding may follow
+        if length > left:
+            if chunks and kind != _BINARY_CHUNK:
+                break  # no chunk, but what someone has appended
             raise MeshError(
-                f"{name}: byte {at}: expected a chunk of {length} bytes, found {len(data) - at}"
+                f"{name}: byte {at + 8}: expected a chunk of {length} bytes, found {left}: "
+                f"file cut short"
             )
-        chunks.append((kind, data[at : at + length]))
-        at += length
-    return chunks
+        chunks.append((kind, data[at + 8 : at + 8 + length]))
+        at += 8 + length
+    return chunks, at
 
 
 def read_uri(uri: str, folder: Folder, place: str) -> bytes | None:

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
+from functools import partial
+from typing import TypeVar
 from urllib.parse import unquote
 
 import numpy as np
@@ -24,6 +26,10 @@ _FILTERS = {9728: "nearest", 9729: "linear"}
 _IMAGE_EXTENSIONS = ("EXT_texture_webp", "EXT_texture_avif")
 _BASISU = "KHR_texture_basisu"
 _GLOSSY = "KHR_materials_pbrSpecularGlossiness"
+_T = TypeVar("_T")
+# Base color, metallic, roughness.
+Factors = tuple[tuple[float, float, float, float], float, float]
+_WHITE = (1.0, 1.0, 1.0, 1.0)
 
 
 @dataclass(frozen=True)
@@ -57,7 +63,8 @@ class UvSource:
 class GltfMaterials:
     """The materials that primitives use, numbered in the order of their first use.
 
-    `shelf` gathers their textures. What cannot be kept of a material is said in `warnings`.
+    `shelf` gathers their textures. What cannot be kept of a material is said in `warnings`, with
+    its place, what was expected and what was found: it costs itself alone.
     """
 
     def __init__(
@@ -72,12 +79,10 @@ class GltfMaterials:
         self._made: dict[int | None, tuple[Material, UvSource]] = {}
 
     def use(self, index: int | None) -> tuple[int, UvSource]:
-        """The number of material `index` of the file, None being the default one, and its UVs.
-
-        Raises MeshError for a malformed material.
-        """
+        """The number of material `index` of the file, None being the default one, and its UVs."""
         if index not in self._made:
-            self._made[index] = self._make(index)
+            default = Material(metallic=1.0), UvSource()
+            self._made[index] = self._read(partial(self._make, index), default)
         return list(self._made).index(index), self._made[index][1]
 
     @property
@@ -85,31 +90,61 @@ class GltfMaterials:
         """The materials used so far; at least one."""
         return tuple(material for material, _ in self._made.values()) or (Material(),)
 
+    def _read(self, read: Callable[[], _T], default: _T) -> _T:
+        """What `read` gives, or the default, with a warning, where the file is malformed."""
+        try:
+            return read()
+        except MeshError as why:
+            self._warnings.append(f"{why}: left out")
+            return default
+
     def _make(self, index: int | None) -> tuple[Material, UvSource]:
         if index is None:
             return Material(metallic=1.0), UvSource()
         source = _without_nan(self._root.entry("materials", index), self._warnings)
         glossy = _glossy(source)
         self._warn_of_extensions(source, glossy is not None)
-        red, green, blue = source.numbers("emissiveFactor", (0.0, 0.0, 0.0))
+        black: tuple[float, ...] = (0.0, 0.0, 0.0)
+        red, green, blue = self._read(partial(source.numbers, "emissiveFactor", black), black)
         infos, uvs = self._of_one_source(dict(_texture_infos(source, glossy)), source)
-        factors = _glossy_factors(glossy) if glossy else _metallic_factors(source)
+        factors = self._glossy_factors(glossy) if glossy else self._metallic_factors(source)
         material = Material(
-            name=material_name(source.text("name", ""), self._warnings) or f"material_{index}",
+            name=material_name(self._read(partial(source.text, "name", ""), ""), self._warnings)
+            or f"material_{index}",
             base_color=factors[0],
             metallic=factors[1],
             roughness=factors[2],
             emissive=(_unit(red), _unit(green), _unit(blue)),
-            alpha_mode=_alpha_mode(source),
-            alpha_cutoff=_unit(source.number("alphaCutoff", 0.5)),
-            double_sided=source.flag("doubleSided"),
+            alpha_mode=self._read(partial(_alpha_mode, source), "opaque"),
+            alpha_cutoff=_unit(self._number(source, "alphaCutoff", 0.5)),
+            double_sided=self._read(partial(source.flag, "doubleSided"), False),
             maps=self._maps(infos),
         )
         return material, uvs
 
+    def _metallic_factors(self, material: Element) -> Factors:
+        """Base color, metallic, roughness."""
+        pbr = material.get("pbrMetallicRoughness") or Element({}, material.file, material.path)
+        return (
+            self._read(partial(_color, pbr, "baseColorFactor"), _WHITE),
+            _unit(self._number(pbr, "metallicFactor", 1.0)),
+            _unit(self._number(pbr, "roughnessFactor", 1.0)),
+        )
+
+    def _glossy_factors(self, glossy: Element) -> Factors:
+        roughness = 1.0 - _unit(self._number(glossy, "glossinessFactor", 1.0))
+        return self._read(partial(_color, glossy, "diffuseFactor"), _WHITE), 0.0, roughness
+
+    def _number(self, owner: Element, key: str, default: float) -> float:
+        return self._read(partial(owner.number, key, default), default)
+
     def _maps(self, infos: dict[str, Element]) -> dict[str, TextureMap]:
-        made = {slot: self._map(slot, info) for slot, info in infos.items()}
-        return {slot: used for slot, used in made.items() if used is not None}
+        maps: dict[str, TextureMap] = {}
+        for slot, info in infos.items():
+            made = self._read(partial(self._map, slot, info), None)
+            if made is not None:
+                maps[slot] = made
+        return maps
 
     def _map(self, slot: str, info: Element) -> TextureMap | None:
         texture = self._root.entry("textures", info.integer("index"))
@@ -117,8 +152,9 @@ class GltfMaterials:
         if place is None:
             return None
         key = BY_NAME[slot].gltf_strength
-        strength = info.number(key, 1.0) if key else 1.0
-        wrap, texture_filter = self._sampling(texture)
+        strength = self._number(info, key, 1.0) if key else 1.0
+        plain = ("repeat", "repeat"), "linear"
+        wrap, texture_filter = self._read(partial(self._sampling, texture), plain)
         return TextureMap(place, wrap, texture_filter, strength)
 
     def _place(self, texture: Element) -> int | None:
@@ -179,7 +215,9 @@ class GltfMaterials:
 
         A mesh has one set of UVs: a map with others would be looked up in wrong places.
         """
-        sources = {slot: _uv_source(info) for slot, info in infos.items()}
+        sources = {
+            slot: self._read(partial(_uv_source, info), UvSource()) for slot, info in infos.items()
+        }
         first = next(iter(sources), "")
         kept = {slot: info for slot, info in infos.items() if sources[slot] == sources[first]}
         if len(kept) < len(infos):
@@ -250,25 +288,6 @@ def _texture_infos(material: Element, glossy: Element | None) -> Iterator[tuple[
             info = glossy.get("diffuseTexture") or info
         if info is not None:
             yield slot.name, info
-
-
-Factors = tuple[tuple[float, float, float, float], float, float]
-
-
-def _metallic_factors(material: Element) -> Factors:
-    """Base color, metallic, roughness."""
-    pbr = material.get("pbrMetallicRoughness") or Element({}, material.file, material.path)
-    color = _color(pbr, "baseColorFactor")
-    return (
-        color,
-        _unit(pbr.number("metallicFactor", 1.0)),
-        _unit(pbr.number("roughnessFactor", 1.0)),
-    )
-
-
-def _glossy_factors(glossy: Element) -> Factors:
-    roughness = 1.0 - _unit(glossy.number("glossinessFactor", 1.0))
-    return _color(glossy, "diffuseFactor"), 0.0, roughness
 
 
 def _color(owner: Element, key: str) -> tuple[float, float, float, float]:

@@ -69,6 +69,10 @@ def parse_mtl(data: bytes, name: str, warnings: list[str]) -> dict[str, MtlMater
         place = f"{name}:{number}"
         if keyword == "newmtl":
             current = MtlMaterial(wavefront.rest(line))
+            if current.name in materials:
+                warnings.append(
+                    f"{place}: material {current.name!r} is there twice: the last counts"
+                )
             materials[current.name] = current
         elif keyword in _VALUES:
             try:
@@ -87,7 +91,7 @@ def parse_mtl(data: bytes, name: str, warnings: list[str]) -> dict[str, MtlMater
 def _values(keyword: str, line: bytes, place: str, warnings: list[str]) -> dict[str, list[float]]:
     words = [word for word in line.split()[1:] if word != b"-halo"]
     if words and words[0] in (b"spectral", b"xyz"):
-        return {}
+        raise MeshError(f"{place}: expected a color in RGB, found {_shown(words)}")
     values = wavefront.numbers(words, 1, place)
     counts = _VALUES[keyword]
     if len(values) < counts[-1] and len(values) not in counts:
@@ -108,7 +112,7 @@ def _map_statement(line: bytes, place: str, warnings: list[str]) -> MapStatement
     options: dict[str, list[str]] = {}
     names: tuple[str, ...] = ()
     at = 1
-    while at < len(words) and words[at].startswith("-"):
+    while at < len(words) and words[at].startswith("-") and len(names) <= wavefront.MOST_SIGNS:
         option, after = words[at].lower(), words[at + 1 :]
         most, kind = _OPTIONS.get(option, (1, ""))
         values = _values_of_option(after[:most], kind)

@@ -162,8 +162,8 @@ def _assemble(
     sizes = _integers(statements.sizes)
     corners = _integers(statements.corners)
     corner_uvs = _integers(statements.corner_uvs)
-    _expect_indices(statements, corners, len(positions), "vertex")
-    _expect_indices(statements, corner_uvs, len(uvs), "texture coordinate")
+    _expect_indices(statements, corners, len(positions))
+    corner_uvs = _known_uvs(statements, corner_uvs, len(uvs), warnings)
     triangles, owner = triangulate(positions[corners], sizes)
     uv_faces = _whole_or_none(corner_uvs[triangles], warnings, statements.name)
     names, numbers = _resolved(list(statements.materials), materials)
@@ -217,12 +217,26 @@ def _integers(values: array[int]) -> Int64Array:
     return np.array(values, dtype=np.int64)
 
 
-def _expect_indices(statements: _Statements, indices: Int64Array, count: int, what: str) -> None:
+def _expect_indices(statements: _Statements, indices: Int64Array, count: int) -> None:
+    if indices.size and indices.max() >= count:
+        raise MeshError(_first_beyond(statements, indices, count, "vertex"))
+
+
+def _known_uvs(
+    statements: _Statements, indices: Int64Array, count: int, warnings: list[str]
+) -> Int64Array:
+    """The indices of texture coordinates, -1 for those that the file does not have."""
     if not indices.size or indices.max() < count:
-        return
+        return indices
+    said = _first_beyond(statements, indices, count, "texture coordinate")
+    warnings.append(f"{said}: left out where it is so")
+    return np.where(indices < count, indices, -1)
+
+
+def _first_beyond(statements: _Statements, indices: Int64Array, count: int, what: str) -> str:
     corner = int(np.argmax(indices >= count))
     face = int(np.searchsorted(np.cumsum(_integers(statements.sizes)), corner, side="right"))
-    raise MeshError(
+    return (
         f"{statements.name}:{statements.face_lines[face]}: expected a {what} index up to {count}, "
         f"found {indices[corner] + 1}"
     )

@@ -12,7 +12,7 @@ from nispcodec.core.arrays import Float64Array
 from nispcodec.core.asset import Material, Texture, TextureMap
 from nispcodec.core.errors import MeshError
 from nispcodec.core.slots import SLOT_TABLE
-from nispcodec.io.folder import Folder
+from nispcodec.io.folder import Folder, composed
 from nispcodec.io.images import TextureShelf, is_gray
 from nispcodec.io.read import wavefront
 from nispcodec.io.read.mtl import MapStatement, MtlMaterial, parse_mtl
@@ -63,6 +63,7 @@ class MaterialReader:
         self._lost = False
         self._known: dict[str, MtlMaterial] = {}
         self._commented: dict[str, set[str]] = {}
+        self._composed: dict[str, str] = {}
         self._folders: dict[str, Folder] = {}
         self._placements: dict[str, Placement] = {}
 
@@ -87,6 +88,7 @@ class MaterialReader:
                 continue
             self._known.update(found)
             self._folders.update(dict.fromkeys(found, self._folder.beside(path)))
+            self._composed.update((composed(name), name) for name in found)
             for name in found:
                 for short in wavefront.without_comments(name)[1:]:
                     self._commented.setdefault(short, set()).add(name)
@@ -124,8 +126,9 @@ class MaterialReader:
         `name` itself where none does. What follows a "#" counts as a comment where it has to.
         """
         for candidate in wavefront.without_comments(name):
-            if candidate in self._known:
-                return candidate
+            for known in (candidate, self._composed.get(composed(candidate), "")):
+                if known in self._known:
+                    return known
         alike = self._commented.get(name, ())
         return next(iter(alike)) if name and len(alike) == 1 else name
 

@@ -88,6 +88,8 @@ def _uv(words: list[bytes], place: str) -> list[float]:
 def _head(lines: Lines, name: str) -> tuple[bytes, int, int]:
     """The keyword, and the counts of vertices and faces."""
     number, line = next(lines, (1, b""))
+    if line[:1].isdigit() and b"OFF" not in line:  # the keyword may be missing
+        line = b"OFF " + line
     keyword = _KEYWORD.match(line)
     if keyword is None or b"BINARY" in line:
         raise MeshError(f"{name}:{number}: expected the keyword OFF and text, found {line[:20]!r}")

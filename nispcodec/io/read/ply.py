@@ -28,7 +28,7 @@ _TYPES = {
 _ORDERS = {"binary_little_endian": "<", "binary_big_endian": ">"}
 _UV_NAMES = (("s", "t"), ("u", "v"), ("texture_u", "texture_v"))
 _XYZ = ("x", "y", "z")
-_COLORS = {"red", "diffuse_red"}
+_COLORS = {"red", "diffuse_red", "r"}
 # The line of its own, which a comment may quote.
 _END = re.compile(rb"[\r\n]end_header[ \t]*(?:\r?\n|\r)")
 # Comments before the name of an image, besides MeshLab's TextureFile.
@@ -84,6 +84,9 @@ def read_ply(data: bytes, name: str, folder: Folder) -> TexturedMesh:
         face = _without_strips(elements["tristrips"])
     if vertex is None or face is None:
         raise MeshError(f"{name}: expected elements vertex and face, found {list(elements)}")
+    used = {"vertex", "face" if "face" in elements else "tristrips"}
+    others = [each.name for each in header.elements if each.count and each.name not in used]
+    warnings.extend(f"{name}: left out element {other!r}" for other in others)
     for element in (vertex, face):
         if _COLORS & element.columns.keys():
             warnings.append(f"{name}: left out {element.name} colors")
@@ -268,8 +271,8 @@ def _assembled(
     polygons = face.lists.get("vertex_indices") or face.lists.get("vertex_index") or []
     sizes = np.array([len(polygon) for polygon in polygons], dtype=np.int64)
     corners = _flat_indices(polygons, len(positions), name)
-    uvs, corner_uvs = _uvs(vertex, face, corners, sizes, name)
-    numbers = _face_materials(face, len(sizes), len(materials), name)
+    uvs, corner_uvs = _uvs(vertex, face, corners, sizes, name, warnings)
+    numbers = _face_materials(face, len(sizes), len(materials), name, warnings)
     if not materials or (numbers == len(materials)).any():
         materials = (*materials, Material())
     whole = sizes >= 3
@@ -332,12 +335,17 @@ def _flat_indices(polygons: Sequence[Sequence[float]], count: int, name: str) ->
 
 
 def _uvs(
-    vertex: Element, face: Element, corners: Int64Array, sizes: Int64Array, name: str
+    vertex: Element,
+    face: Element,
+    corners: Int64Array,
+    sizes: Int64Array,
+    name: str,
+    warnings: list[str],
 ) -> tuple[Float64Array, Int64Array]:
     """UVs and each corner's index: the faces' own where they have them, else the vertices'."""
     listed = face.lists.get("texcoord")
     if listed is not None:
-        return _corner_uvs(listed, sizes, name)
+        return _corner_uvs(listed, sizes, name, warnings)
     for names in _UV_NAMES:
         if set(names) <= set(vertex.columns):
             return _columns(vertex, names, name), corners
@@ -345,28 +353,36 @@ def _uvs(
 
 
 def _corner_uvs(
-    listed: Sequence[Sequence[float]], sizes: Int64Array, name: str
+    listed: Sequence[Sequence[float]], sizes: Int64Array, name: str, warnings: list[str]
 ) -> tuple[Float64Array, Int64Array]:
-    """A face without as many UVs as corners must have none."""
+    """A face without as many UVs as corners has none."""
     lengths = np.array([len(values) for values in listed], dtype=np.int64)
-    wrong = (lengths != 2 * sizes) & (lengths != 0)
-    flat = np.array([value for values in listed for value in values], dtype=np.float64)
+    right = (lengths == 2 * sizes) & (lengths > 0)
+    wrong = ~right & (lengths > 0)
     if wrong.any():
         face = int(wrong.argmax())
-        raise MeshError(
+        warnings.append(
             f"{name}: face {face}: expected {2 * sizes[face]} texture coordinates, "
-            f"found {lengths[face]}"
+            f"found {lengths[face]}: left out those of {wrong.sum()} face(s)"
         )
-    has_uv = np.repeat(lengths > 0, sizes)
+    kept = (listed[face] for face in np.flatnonzero(right).tolist())
+    flat = np.array([value for values in kept for value in values], dtype=np.float64)
+    has_uv = np.repeat(right, sizes)
     return flat.reshape(-1, 2), np.where(has_uv, np.cumsum(has_uv) - 1, -1)
 
 
-def _face_materials(face: Element, faces: int, materials: int, name: str) -> Int64Array:
+def _face_materials(
+    face: Element, faces: int, materials: int, name: str, warnings: list[str]
+) -> Int64Array:
     """MeshLab numbers the textures; -1 is none. A file without textures has material 0."""
     numbers = face.columns.get("texnumber")
     if numbers is None:
         return np.zeros(faces, dtype=np.int64)
     chosen = np.array(numbers, dtype=np.float64)
-    if not (chosen < max(materials, 1)).all():
-        raise MeshError(f"{name}: expected texnumbers below {materials}, found {chosen.max():g}")
-    return np.where(chosen < 0, materials, chosen).astype(np.int64)
+    known = chosen < max(materials, 1)
+    if not known.all():
+        warnings.append(
+            f"{name}: face {int(known.argmin())}: expected a texnumber below {materials}, found "
+            f"{chosen[known.argmin()]:g}: left out those of {(~known).sum()} face(s)"
+        )
+    return np.where(known & (chosen >= 0), chosen, materials).astype(np.int64)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import codecs
 import math
 import re
 from collections.abc import Iterator, Sequence
@@ -19,6 +20,7 @@ _NOT_FINITE = re.compile(rb"[+-]?(?:nan(?:\(\w*\))?|inf(?:inity)?|1\.#\w+)", re.
 # More "#" in a line than this belong to no name.
 MOST_SIGNS = 8
 BYTE_ORDER_MARK = b"\xef\xbb\xbf"
+_WIDE_MARKS = (codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)
 
 
 def logical_lines(data: bytes) -> Iterator[tuple[int, bytes]]:
@@ -27,6 +29,8 @@ def logical_lines(data: bytes) -> Iterator[tuple[int, bytes]]:
     A line that was continued has the number of its first part. A statement that ends in a name
     keeps what follows "#": whether that is a comment only `names` can tell.
     """
+    if data.startswith(_WIDE_MARKS):  # as PowerShell writes text
+        data = data.decode("utf-16", errors="replace").encode()
     data = data.removeprefix(BYTE_ORDER_MARK).replace(b"\r\n", b"\n").replace(b"\r", b"\n")
     parts: list[bytes] = []
     for number, raw in enumerate([*data.split(b"\n"), b""], 1):
