@@ -50,7 +50,8 @@ class Choice:
         forms = self._forms
         self._field_bytes = size
         distance = forms.fitted * probe_error
-        self._estimate = self._form.estimate(distance, forms.surely_larger * size)
+        few, many = forms.surely_smaller * size, forms.surely_larger * size
+        self._estimate = self._form.estimate(distance, few, many)
         return self._estimate > forms.surely_smaller * size
 
     def after_fit(self, field: Document, errors: Errors) -> Chosen:
@@ -84,7 +85,7 @@ class Choice:
             return self._form.of_size(size)
         if self._config.target_error:
             return self._form.within(self._config.target_error, errors.uv)
-        if self._form.estimate(errors.distance, size) >= size:
+        if self._form.estimate(errors.distance, size, size) >= size:
             return None
         return self._form.best(errors.distance, size)
 

@@ -113,6 +113,9 @@ class FormConfig:
     Distances are means in the normalized frame, UV errors means in the asset's UV.
 
     growth           of the faces from one candidate to the next
+    bytes_per_face   that candidates typically take: which are looked at first
+    estimate_trials  candidates that an estimate looks at
+    bytes_slope      of the bytes by the distance, both as logarithms, as typical
     least_bytes_per_face   no mesh was coded in fewer
     coarseness       of roundings of the unsimplified mesh, against a negligible distance
     surely_smaller   share of the networks' bytes from which down triangles are taken unseen: the
@@ -130,6 +133,9 @@ class FormConfig:
     """
 
     growth: float = 1.8
+    bytes_per_face: float = 2.0
+    estimate_trials: int = 4
+    bytes_slope: float = 0.75
     least_bytes_per_face: float = 1.0
     coarseness: tuple[float, ...] = (4.0, 2.0, 1.0)
     surely_smaller: float = 0.5

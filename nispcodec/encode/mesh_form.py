@@ -8,12 +8,11 @@ from dataclasses import replace
 from functools import cached_property
 from math import log
 
-import numpy as np
-
 from nispcodec.core.document import Document, Field
 from nispcodec.core.mesh_part import MeshPart
 from nispcodec.core.progress import Listener, Progress
 from nispcodec.encode.config import FormConfig
+from nispcodec.encode.rungs import Rungs
 from nispcodec.extract.meshing import default_resolution, expected_faces, textured_mesh
 from nispcodec.format import mesh
 from nispcodec.geometry.analysis import Analysis
@@ -40,7 +39,6 @@ class MeshForm:
     ) -> None:
         self._analysis, self._seed, self._config = analysis, seed, config
         self._progress = progress
-        self._made: list[Candidate] = []
 
     @cached_property
     def simplifier(self) -> Simplifier:
@@ -49,6 +47,12 @@ class MeshForm:
         triangles = Triangles.of(found.mesh, self._analysis.frame, None, found.sheet)
         kept = found.faces[distinct_corners(found.mesh)]
         return Simplifier.of_kept(triangles, kept, coded_bytes, self._config.ladder, self._seed)
+
+    @cached_property
+    def _rungs(self) -> Rungs:
+        config, slope = self._config, self._config.bytes_slope
+        per_face = config.bytes_per_face
+        return Rungs(self.simplifier, config.growth, per_face, slope, config.estimate_trials)
 
     def errors(self, document: Document) -> Errors:
         """How far the surface that a document decodes to is off."""
@@ -65,22 +69,13 @@ class MeshForm:
         faces = expected_faces(field.sdf, cells)
         return round(cells * min(1.0, math.sqrt(self._config.measured_faces / max(faces, 1))))
 
-    def estimate(self, distance: float, enough: float) -> float:
-        """About how many bytes the asset takes at a mean distance; `enough` or more is enough.
+    def estimate(self, distance: float, few: float, many: float) -> float:
+        """About how many bytes the asset takes at a mean distance.
 
-        From candidates of more and more faces, up to the first that is as near or as large.
+        Most exactly between `few` and `many`.
         """
         self._progress(Progress(stage="triangles"))
-        before: Candidate | None = None
-        for found in self._rising(enough):
-            if found.errors.distance <= distance:
-                break
-            before = found
-        if found.errors.distance > distance:
-            return max(enough, found.size)
-        if before is None:
-            return found.size
-        return _between(before, found, distance)
+        return self._rungs.bytes_at(distance, few, many)
 
     def best(self, most_distance: float, most_bytes: float) -> Candidate:
         """The candidate with the least sum of the logarithms of bytes and errors, as weighted.
@@ -88,25 +83,10 @@ class MeshForm:
         Of those within both limits, if any, else of those within the limit of the distance.
         """
         self._progress(Progress(stage="triangles"))
-        found = [*self._rising(most_bytes), *self._whole(most_bytes)]
+        found = [*self._rungs.rising(most_bytes), *self._whole(most_bytes)]
         near = [each for each in found if each.errors.distance <= most_distance] or found
         within = [each for each in near if each.size <= most_bytes] or near
         return min(within, key=self._cost)
-
-    def _rising(self, most_bytes: float) -> Iterator[Candidate]:
-        """Candidates of more and more faces, up to the first of so many bytes; each made once."""
-        everything = len(self.simplifier.source.triangles)
-        faces, number = min(self._config.ladder.fewest, everything), 0
-        while True:
-            if number == len(self._made):
-                self._made.append(self.simplifier.balanced(faces))
-            found = self._made[number]
-            yield found
-            if found.size >= most_bytes or faces == everything:
-                return
-            # Where fewer faces cannot be had than these, the next are to be more.
-            faces = min(everything, round(self._config.growth * max(faces, found.faces)))
-            number += 1
 
     def _whole(self, most_bytes: float) -> Iterator[Candidate]:
         """Every face, rounded to several errors, where that may be had for so many bytes."""
@@ -164,10 +144,3 @@ class MeshForm:
             + config.distance_weight * log(max(errors.distance, config.negligible))
             + config.uv_weight * log(max(errors.uv, config.negligible_uv))
         )
-
-
-def _between(before: Candidate, after: Candidate, distance: float) -> float:
-    """Bytes at a distance between those of two candidates, as a power of it."""
-    far, near = before.errors.distance, max(after.errors.distance, np.finfo(float).tiny)
-    share = math.log(far / distance) / math.log(far / near)
-    return before.size * (after.size / before.size) ** share

@@ -27,16 +27,16 @@ def box() -> MeshForm:
 
 
 def test_a_nearer_surface_is_estimated_to_take_more_bytes(ball: MeshForm) -> None:
-    estimates = [ball.estimate(distance, 1e9) for distance in (7e-3, 4e-3, 1.5e-3)]
+    estimates = [ball.estimate(distance, 300.0, 1e9) for distance in (7e-3, 4e-3, 1.5e-3)]
     assert estimates == sorted(set(estimates))
-    assert ball.estimate(1e-12, 700.0) >= 700
+    assert ball.estimate(1e-12, 300.0, 700.0) >= 700
 
 
 def test_the_estimate_is_near_what_is_found(ball: MeshForm) -> None:
     found = ball.within(4e-3, math.inf)
     assert found is not None
     assert found.errors.distance <= 4e-3
-    assert 0.6 < ball.estimate(4e-3, 1e9) / found.size < 1.6
+    assert 0.6 < ball.estimate(4e-3, 300.0, 1e9) / found.size < 1.6
 
 
 def test_few_large_faces_are_kept_as_they_are(box: MeshForm) -> None:

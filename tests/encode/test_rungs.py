@@ -1,0 +1,71 @@
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from types import SimpleNamespace
+from typing import Any, cast
+
+import pytest
+
+from nispcodec.encode.rungs import Rungs
+from nispcodec.simplify.config import LadderConfig
+from nispcodec.simplify.ladder import Candidate, Simplifier
+
+EVERYTHING = 20_000
+
+
+@dataclass
+class PowerLaw:
+    """In place of a simplifier: three bytes a face, a distance of 1 by the faces, and who asked."""
+
+    config: LadderConfig = field(default_factory=LadderConfig)
+    asked: list[int] = field(default_factory=list)
+    source: Any = field(default_factory=lambda: SimpleNamespace(triangles=range(EVERYTHING)))
+
+    def balanced(self, faces: int) -> Candidate:
+        self.asked.append(faces)
+        made = SimpleNamespace(
+            size=3 * faces, faces=faces, errors=SimpleNamespace(distance=1 / faces)
+        )
+        return cast(Candidate, made)
+
+
+@pytest.fixture
+def law() -> PowerLaw:
+    return PowerLaw()
+
+
+@pytest.fixture
+def rungs(law: PowerLaw) -> Rungs:
+    return Rungs(cast(Simplifier, law), 1.8, bytes_per_face=2.0, slope=0.75, tries=4)
+
+
+@pytest.mark.parametrize("faces", [200, 900, 5000, 15_000])
+def test_between_two_rungs_the_bytes_are_those_of_the_power_law(rungs: Rungs, faces: int) -> None:
+    found = rungs.bytes_at(1 / faces, 1000.0, 60_000.0)
+    assert math.isclose(found, 3 * faces, rel_tol=0.03)
+
+
+def test_what_is_clearly_too_large_takes_one_candidate(law: PowerLaw, rungs: Rungs) -> None:
+    assert rungs.bytes_at(1e-6, 1000.0, 2000.0) > 2000
+    assert len(law.asked) == 1
+
+
+def test_no_more_candidates_than_tries(law: PowerLaw, rungs: Rungs) -> None:
+    for distance in (1e-2, 1e-3, 1e-4, 1e-9, 10.0):
+        law.asked.clear()
+        assert rungs.bytes_at(distance, 600.0, 1e9) > 0
+        assert len(law.asked) <= 4
+
+
+def test_each_rung_is_made_once(law: PowerLaw, rungs: Rungs) -> None:
+    rungs.bytes_at(1 / 2000, 3000.0, 9000.0)
+    rising = list(rungs.rising(math.inf))
+    assert [each.faces for each in rising] == sorted({*law.asked})
+    assert len(law.asked) == len(rising)
+    assert rising[-1].faces == EVERYTHING
+
+
+def test_rising_ends_with_the_first_of_so_many_bytes(rungs: Rungs) -> None:
+    sizes = [each.size for each in rungs.rising(4000.0)]
+    assert sizes[-1] >= 4000 > sizes[-2]
