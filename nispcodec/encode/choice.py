@@ -21,12 +21,14 @@ from nispcodec.simplify.ladder import Candidate
 class Chosen:
     """A document, what its surface is off, and about how many bytes the other form would take.
 
-    `other_bytes` is 0 where only one form was asked for.
+    other_bytes    0 where only one form was asked for
+    other_made_up  share of the other form's surface that is made up, where it lost for that
     """
 
     document: Document
     errors: Errors
     other_bytes: float = 0.0
+    other_made_up: float = 0.0
 
 
 class Choice:
@@ -57,6 +59,10 @@ class Choice:
     def after_fit(self, field: Document, errors: Errors) -> Chosen:
         """The fitted field, whose surface has these errors, or triangles that are better."""
         size = own_bytes(field)
+        if self._open and errors.made_up.share > self._forms.notable_far:
+            instead = self._instead(field, size, errors)
+            if instead:
+                return instead
         if not self._open or self._estimate > self._forms.surely_larger * size:
             return Chosen(field, errors, self._estimate)
         found = self._rival(size, errors)
@@ -69,6 +75,22 @@ class Choice:
         if target:
             better = other <= target and found.errors.distance < errors.distance
         return Chosen(meshes, found.errors, size) if better else Chosen(field, errors, other)
+
+    def _instead(self, field: Document, size: int, errors: Errors) -> Chosen | None:
+        """Triangles in place of a field that makes up surface, unless they take many more bytes."""
+        made_up, target = errors.made_up.share, self._config.target_size
+        most = target or self._forms.worth * size
+        if self._config.target_error:
+            found = self._form.within(self._config.target_error, errors.uv)
+        elif target:
+            found = self._form.of_size(size)
+        else:
+            found = self._form.best(errors.distance, most)
+        if found is None or found.errors.made_up.share > self._forms.notable_far:
+            return None
+        meshes = replace(field, field=None, meshes=found.parts)
+        fits = own_bytes(meshes) <= most
+        return Chosen(meshes, found.errors, size, made_up) if fits else None
 
     def triangles(self, document: Callable[[tuple[MeshPart, ...]], Document]) -> Chosen:
         """The asset as triangles, as near as the preset or the target asks.

@@ -128,6 +128,8 @@ class FormConfig:
     distance_weight  of the logarithm of the distance against that of the bytes: halving it is worth
                      a third more bytes
     uv_weight        the same for UV errors
+    notable_far      share of the area that a form may make up, or lose, before its owner is warned
+    worth            times a field's bytes that triangles may take where it makes up notable surface
     least_bits       of a coordinate, where a target size asks for grids that coarse
     size_trials      face counts tried for a target size: each halves what is left, on a log scale
     """
@@ -146,6 +148,8 @@ class FormConfig:
     negligible_uv: float = 5e-4
     distance_weight: float = 0.4
     uv_weight: float = 0.15
+    notable_far: float = 5e-4
+    worth: float = 3.0
     least_bits: int = 5
     size_trials: int = 7
     ladder: LadderConfig = field(default_factory=LadderConfig)

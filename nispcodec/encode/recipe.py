@@ -13,8 +13,9 @@ from nispcodec.core.progress import Listener, Progress, silent
 from nispcodec.dataset.recipes import paper_training_sets, training_sets
 from nispcodec.dataset.sampler import Sampler
 from nispcodec.encode.appearance import appearance
-from nispcodec.encode.choice import Choice
+from nispcodec.encode.choice import Choice, Chosen
 from nispcodec.encode.config import EncodeConfig, Tuning
+from nispcodec.encode.far_surface import far_warnings
 from nispcodec.encode.fitting import fit
 from nispcodec.encode.mesh_form import MeshForm
 from nispcodec.encode.report import measured
@@ -66,7 +67,8 @@ def _encoded(
 
     if config.geometry == "mesh":
         chosen = choice.triangles(of_triangles)
-        return NispModel(replace(chosen.document, info=measured(chosen, analysis, config)))
+        info = measured(chosen, analysis, config)
+        return _finished(chosen, info, mesh.name, config, tuning, progress)
     progress(Progress(stage="samples"))
     sampler = Sampler(analysis, config.seed, tuning.sampling_of(config.preset))
     sets = (paper_training_sets if published else training_sets)(sampler)
@@ -80,6 +82,22 @@ def _encoded(
     else:
         chosen = choice.triangles(of_triangles)
     info = measured(chosen, analysis, config, engine.name, sets)
+    return _finished(chosen, info, mesh.name, config, tuning, progress)
+
+
+def _finished(
+    chosen: Chosen,
+    info: Mapping[str, str | int | float | bool],
+    name: str,
+    config: EncodeConfig,
+    tuning: Tuning,
+    progress: Listener,
+) -> NispModel:
+    """The model, after its owner was warned of surface that is made up or lost."""
+    notable = tuning.forms.notable_far
+    better = tuning.training.better_than(config.preset)
+    for warning in far_warnings(chosen.document, chosen.errors, better, notable):
+        progress(Progress(stage="surface", warning=f"{name}: {warning}"))
     return NispModel(replace(chosen.document, info=info))
 
 

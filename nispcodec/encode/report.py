@@ -32,6 +32,8 @@ def measured(
     found["hidden_share"] = _short(solid.hidden_share)
     found["open_surface_share"] = _short(solid.open_surface_share)
     found["distance_error"] = _short(errors.distance)
+    found["made_up_share"] = _short(errors.made_up.share)
+    found["lost_share"] = _short(errors.lost.share)
     field = chosen.document.field
     if field and field.chart and sets:
         found["chart_accuracy"] = _short(_chart_accuracy(field, sets))
@@ -40,6 +42,8 @@ def measured(
         found["uv_error_mean"] = _short(errors.uv)
     if chosen.other_bytes:
         found["other_form_bytes"] = _short(chosen.other_bytes)
+    if chosen.other_made_up:
+        found["other_form_made_up_share"] = _short(chosen.other_made_up)
     return found
 
 

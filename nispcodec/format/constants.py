@@ -33,6 +33,8 @@ MEASURES = (
     "uv_error_median",
     "uv_error_mean",
     "other_form_bytes",
+    "made_up_share",
+    "lost_share",
 )
 PRESETS = ("balanced", "paper", "fast", "best")
 STEPS = ("byte", "float16", "float32", "same", "rows1", "rows2", "rows3")

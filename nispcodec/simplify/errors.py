@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -10,6 +10,7 @@ from nispcodec.core.arrays import BoolArray
 from nispcodec.core.asset import Material, TexturedMesh
 from nispcodec.core.errors import MeshError
 from nispcodec.core.mesh_part import MeshPart
+from nispcodec.metrics.far_points import FAR, FarPoints
 from nispcodec.metrics.geometry import Matches
 from nispcodec.metrics.surface import Surface, SurfacePoints
 from nispcodec.metrics.uv import uv_errors
@@ -22,12 +23,16 @@ class Errors:
     """The larger of both directions; distances in the normalized frame, UVs in the asset's.
 
     distance, uv  means; distance_p99, uv_median; 0 for UVs where the original has none
+    made_up       points of the part that are far from the original
+    lost          points of the original, of counted faces, that are far from the part
     """
 
     distance: float
     distance_p99: float
     uv: float
     uv_median: float
+    made_up: FarPoints = field(default_factory=FarPoints, compare=False)
+    lost: FarPoints = field(default_factory=FarPoints, compare=False)
 
     def within(self, distance: float, uv: float) -> bool:
         """Whether both means are at most so large."""
@@ -36,27 +41,37 @@ class Errors:
 
 @dataclass(frozen=True)
 class Original:
-    """A surface that parts are compared with, and points on it."""
+    """A surface that parts are compared with, and points on it.
+
+    tree   for closest points
+    whole  the same of all that is there, hidden faces too: nothing that is near it is made up
+    """
 
     surface: Surface
     points: SurfacePoints
     tree: Tree
+    whole: Tree
     seed: int
 
     @staticmethod
     def of(
-        triangles: Triangles, tree: Tree, samples: int, seed: int, counted: BoolArray | None = None
+        triangles: Triangles,
+        tree: Tree,
+        samples: int,
+        seed: int,
+        counted: BoolArray | None = None,
+        whole: Tree | None = None,
     ) -> Original:
         """`samples` points on the original; of those only the ones on `counted` faces (m,) bool.
 
-        Raises MeshError where no face has an area.
+        whole: None where the tree has all. Raises MeshError where no face has an area.
         """
         mesh = triangles.mesh()
         surface = Surface(mesh, mesh.positions)
         points = surface.sample(samples, np.random.default_rng([seed, 0]))
         if counted is not None and counted[points.faces].any():
             points = points[counted[points.faces]]
-        return Original(surface, points, tree, seed)
+        return Original(surface, points, tree, whole or tree, seed)
 
     def errors(self, decoded: TexturedMesh) -> Errors:
         """Errors of a mesh whose positions are in the normalized frame.
@@ -79,7 +94,16 @@ class Original:
             distance_p99=max(float(np.percentile(each.distances, 99)) for each in directions),
             uv=max((float(each.mean()) for each in seen), default=0.0),
             uv_median=max((float(np.median(each)) for each in seen), default=0.0),
+            made_up=self._nowhere(FarPoints.of(decoded, points, directions[1].distances)),
+            lost=FarPoints.of(self.surface.mesh, self.points, directions[0].distances),
         )
+
+    def _nowhere(self, far: FarPoints) -> FarPoints:
+        """Those that are far from hidden faces too."""
+        if self.whole is self.tree or not len(far.positions):
+            return far
+        offsets = self.whole.closest(far.positions).positions - far.positions
+        return far.only(np.linalg.norm(offsets, axis=1) > FAR)
 
     def _closest(self, points: SurfacePoints) -> SurfacePoints:
         """As `Surface.closest`, by the tree that is there."""

@@ -78,7 +78,7 @@ class Simplifier:
         Raises MeshError where no face has an area.
         """
         copies = copies_of(triangles, config.copies, kept)
-        return Simplifier._of(copies, triangles, kept, coded, config, seed)
+        return Simplifier._of(copies, triangles, kept, None, coded, config, seed)
 
     @staticmethod
     def of_kept(
@@ -86,14 +86,18 @@ class Simplifier:
     ) -> Simplifier:
         """As `of`, but others than the kept faces are found only where copies have them."""
         copies = copies_of(triangles, config.copies, kept)
+        if copies.covered.all():
+            return Simplifier._of(copies, triangles, kept, None, coded, config, seed)
         there, kept = triangles.only(copies.covered), kept[copies.covered]
-        return Simplifier._of(copies, there, kept, coded, config, seed)
+        whole = Tree(triangles.corners)
+        return Simplifier._of(copies, there, kept, whole, coded, config, seed)
 
     @staticmethod
     def _of(
         copies: Copies,
         triangles: Triangles,
         kept: BoolArray | None,
+        whole: Tree | None,
         coded: Coded,
         config: LadderConfig,
         seed: int,
@@ -101,7 +105,7 @@ class Simplifier:
         source = Source(copies.triangles)
         same = len(source.triangles) == len(triangles)
         tree = source.tree if same else Tree(triangles.corners)
-        original = Original.of(triangles, tree, config.samples, seed, kept)
+        original = Original.of(triangles, tree, config.samples, seed, kept, whole)
         return Simplifier(copies, source, original, coded, config, seed)
 
     def fitted(self, faces: int) -> Triangles:

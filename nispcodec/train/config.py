@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from itertools import pairwise
 
 
 @dataclass(frozen=True)
@@ -372,3 +373,8 @@ class TrainConfig:
     affine_ridge: float = 1e-4
     probe_steps: int = 1500
     probe_w0_scale: float = 0.7
+
+    def better_than(self, preset: str) -> str | None:
+        """The preset that learns longer; None for the last one and for others than `budgets`."""
+        following = dict(pairwise(self.budgets))
+        return following.get(preset)

@@ -7,6 +7,7 @@ from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any
 
+import numpy as np
 import pytest
 
 from nispcodec import EncodeConfig
@@ -15,8 +16,9 @@ from nispcodec.core.errors import FitError, NispError
 from nispcodec.core.mesh_part import MeshPart
 from nispcodec.core.network import NetworkSpec
 from nispcodec.encode.choice import Choice, own_bytes
-from nispcodec.encode.config import Tuning
+from nispcodec.encode.config import FormConfig, Tuning
 from nispcodec.encode.mesh_form import coded_bytes
+from nispcodec.metrics.far_points import FarPoints
 from nispcodec.simplify.errors import Errors
 from tests import tiny
 from tests.infer.parts import cube, part_of
@@ -86,6 +88,20 @@ def test_triangles_that_are_smaller_and_no_worse_are_taken() -> None:
     assert chosen.document.field is None
     assert chosen.document.meshes == (PART,)
     assert (chosen.errors, chosen.other_bytes) == (EXACT, SIZE)
+
+
+def test_triangles_are_worth_more_bytes_where_the_field_makes_up_surface() -> None:
+    webbed = replace(OFF, made_up=FarPoints(1000, np.zeros((50, 3)), np.zeros(50, np.int32)))
+    dear, form = Tuning(forms=FormConfig(worth=1e3)), Told(10.0 * SIZE, best=candidate())
+    taken = Choice(form, EncodeConfig(), dear).after_fit(FIELD, webbed)  # type: ignore[arg-type]
+    assert taken.document.meshes == (PART,)
+    assert (taken.other_bytes, taken.other_made_up) == (SIZE, 0.05)
+    cheap, form = Tuning(forms=FormConfig(worth=1e-3)), Told(10.0 * SIZE, best=candidate())
+    kept = Choice(form, EncodeConfig(), cheap).after_fit(FIELD, webbed)  # type: ignore[arg-type]
+    assert (kept.document, kept.other_made_up) == (FIELD, 0.0)
+    no_better = Told(10.0 * SIZE, best=candidate(webbed))
+    kept = Choice(no_better, EncodeConfig(), dear).after_fit(FIELD, webbed)  # type: ignore[arg-type]
+    assert kept.document is FIELD
 
 
 def test_larger_triangles_are_not() -> None:

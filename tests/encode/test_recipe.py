@@ -148,7 +148,7 @@ def test_faces_the_wrong_way_round_are_told_of() -> None:
     corners[:2] = corners[:2, ::-1]
     told: list[str] = []
     encode(bare(soup(corners)), progress=lambda update: told.append(update.warning))
-    (warning,) = filter(None, told)
+    warning = next(filter(None, told))
     assert "turned faces" in warning
     assert "16.67% of the area" in warning
 

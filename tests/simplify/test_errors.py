@@ -53,6 +53,22 @@ def test_only_counted_faces_are_looked_for() -> None:
     assert Original.of(source.triangles, source.tree, 2000, 0).errors(half.mesh()).distance > 0.1
 
 
+def test_what_is_missing_is_lost_and_what_is_too_much_is_made_up() -> None:
+    source = Source(ball())
+    half = source.triangles.only(source.triangles.corners[..., 2].mean(axis=1) > 0)
+    errors = Original.of(source.triangles, source.tree, 2000, 0).errors(half.mesh())
+    assert errors.lost.share == pytest.approx(0.5, abs=0.03)
+    assert errors.lost.largest.center[2] < 0
+    assert errors.made_up.share == 0
+    other = Source(half)
+    errors = Original.of(half, other.tree, 2000, 0).errors(source.triangles.mesh())
+    assert errors.made_up.share == pytest.approx(0.5, abs=0.03)
+    assert errors.lost.share == 0
+    # What lies on faces that are hidden is not made up.
+    hidden = Original.of(half, other.tree, 2000, 0, whole=source.tree)
+    assert hidden.errors(source.triangles.mesh()).made_up.share == 0
+
+
 def test_both_means_must_be_within() -> None:
     errors = Errors(1e-3, 1.0, 2e-3, 1.0)
     assert errors.within(1e-3, 2e-3)

@@ -20,6 +20,8 @@ export const MEASURES = [
   "uv_error_median",
   "uv_error_mean",
   "other_form_bytes",
+  "made_up_share",
+  "lost_share",
 ];
 export const PRESETS = ["balanced", "paper", "fast", "best"];
 export const CODINGS = ["dense", "coo", "csc", "csr", "dia", "entropy", "delta_init"];
