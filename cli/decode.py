@@ -12,6 +12,7 @@ import click
 from .choices import mesh_suffixes
 from .errors import warn
 from .extras import expect_installed
+from .grid import SUFFIX, expect_fitting, write_grid
 from .lines import duration
 from .outputs import OutputFile, listed, output_option, refuse_overwriting
 from .progress import progress_options, shown
@@ -32,7 +33,7 @@ FEWER = "  fewer faces: --faces 20000, or --target-error 1e-3 (mean distance, in
 
 @subcommand("decode", "Write a .nisp file as a textured mesh.")
 @model_argument
-@output_option(OutputFile(mesh_suffixes))
+@output_option(OutputFile(lambda: (*mesh_suffixes(), SUFFIX)))
 @click.option(
     "--mesh", "kind", flag_value="mesh", default="mesh", help="A textured mesh (default)."
 )
@@ -54,6 +55,12 @@ FEWER = "  fewer faces: --faces 20000, or --target-error 1e-3 (mean distance, in
     metavar="[SIZE]",
     help=f"One new atlas, textures 1024 texels wide; {REBAKE_FACES:,} faces unless told.",
 )
+@click.option(
+    "--grid",
+    type=Whole(16, 1024),
+    metavar="SAMPLES",
+    help="Signed distances on a grid in place of a mesh, so many along the longest side: an .npz.",
+)
 @click.option("--keep-spurious", is_flag=True, help="Keep what is recognized as noise.")
 @force_option
 @progress_options
@@ -64,6 +71,7 @@ def command(
     kind: str,
     colors: bool,
     rebake: int | None,
+    grid: int | None,
     force: bool,
     progress: str,
     quiet: bool,
@@ -77,6 +85,7 @@ def command(
 
     \b
     Example: nisp decode model.nisp --mesh -o out.glb
+             nisp decode model.nisp --grid 128 -o field.npz
     """
     from nispcodec.io.save import losses
     from nispcodec.model import NispModel
@@ -85,8 +94,13 @@ def command(
         raise click.UsageError("--colors and --rebake: expected one of them, found both")
     if rebake:
         expect_installed("xatlas", "scipy")
+    expect_fitting(output, grid)
     started = time.monotonic()
     loaded = NispModel(parsed(model.read(), model))
+    if grid is not None:
+        with shown("decode", progress, quiet) as listen:
+            write_grid(loaded, output, grid, how["resolution"], force, as_json, listen)
+        return
     refuse_overwriting(_planned(loaded, output, colors, bool(rebake)), force)
     with shown("decode", progress, quiet) as listen:
         mesh, written = _written(loaded, output, colors, rebake, how, listen)

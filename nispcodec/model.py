@@ -18,6 +18,8 @@ from nispcodec.infer.parts import Union
 if TYPE_CHECKING:
     import trimesh
 
+    from nispcodec.core.sdf_grid import SdfGrid
+
 FRAMES = ("world", "normalized")
 FAR = 1e6
 # Points that are prepared, or looked up, at a time: both take many times the memory of the answer.
@@ -43,7 +45,12 @@ class NispModel:
         return Union(self.document)
 
     def sdf(self, points: ArrayLike, frame: str = "world") -> Float32Array:
-        """Signed distance to the surface (n,) float32, negative inside, in the units of `frame`."""
+        """Signed distance to the surface (n,) float32, negative inside, in the units of `frame`.
+
+        A fitted field is a distance near its surface; farther off its sign can be trusted, its
+        value less (docs/physics.md). Beyond the ball around the asset, normalized |p| > 1.01, it
+        may be anything. `sdf_grid` has exact distances.
+        """
         scale = np.float32(self.document.frame.radius if frame == "world" else 1)
         return self.parts.sdf(self._normalized(points, frame)) * scale
 
@@ -125,6 +132,19 @@ class NispModel:
         from nispcodec.extract.meshing import textured_mesh
 
         return textured_mesh(self.document, resolution, faces, error, keep_spurious)[0]
+
+    def sdf_grid(self, samples: int = 128, resolution: int | None = None) -> SdfGrid:
+        """Signed distances on a grid around the asset, world frame: `values()`, `save("x.npz")`.
+
+        `samples` is their number along the longest side, 16 to 1024, with three spacings around the
+        surface. Distances are those to the decoded surface, exact wherever they are, while `sdf` is
+        near the distance at the surface alone. `resolution` is that of `to_mesh`; openings are
+        closed, noise is dropped. Raises QueryError for other numbers of samples, MeshError without
+        a surface.
+        """
+        from nispcodec.extract.decoded_distance import sdf_grid
+
+        return sdf_grid(self.document, samples, resolution)
 
     def to_trimesh(
         self,

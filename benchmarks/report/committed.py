@@ -115,5 +115,6 @@ RESULTS = (
         (*CORE, "nispcodec/geometry", "nispcodec/dataset"),
     ),
     CommittedResult("random_assets.json", "benchmarks.studies.random_assets", ENCODE),
+    CommittedResult("sdf_grid.json", "benchmarks.studies.sdf_grid", ROUND_TRIP),
     CommittedResult("web_decoder.json", "benchmarks.studies.web_decoder", ("web",)),
 )

@@ -37,6 +37,20 @@ class ResolutionConfig:
 
 
 @dataclass(frozen=True)
+class GridConfig:
+    """Grids of signed distances.
+
+    margin  spacings around the surface, at least: half the width of OpenVDB's narrow bands
+    least   samples along the longest side: fewer leave none between the margins
+    most    ... more are four gigabytes and hours
+    """
+
+    margin: int = 3
+    least: int = 16
+    most: int = 1024
+
+
+@dataclass(frozen=True)
 class IsosurfaceConfig:
     """How the zero set is found and where its vertices lie.
 

@@ -45,7 +45,7 @@ def textured_mesh(
     if document.field is None:
         return joined(document, None), ExtractionReport(0, 0, 0, 0)
     field = document.field
-    surface, report = _surface(field, resolution, error, keep_spurious, config)
+    surface, report = field_surface(field, resolution, error, keep_spurious, config)
     if error is not None:
         surface = simplest(field.sdf, surface, error, config.simplify)
     if faces is None:
@@ -77,14 +77,17 @@ def expected_faces(
     return int(len(points) * config.faces_per_block * (resolution / config.least) ** 2)
 
 
-def _surface(
+def field_surface(
     field: Field,
     resolution: int | None,
     error: float | None,
     keep_spurious: bool,
     config: ExtractConfig,
 ) -> tuple[Surface, ExtractionReport]:
-    """The surface at the resolution asked for, or at one that is fine enough for `error`."""
+    """The surface at the resolution asked for, or at one that is fine enough for `error`.
+
+    It is closed: it has the closing surfaces of openings.
+    """
     sdf, limits = field.sdf, config.resolution
     cells = resolution or default_resolution(sdf, field.half_thickness, limits)
     while True:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import re
 from functools import partial
 from pathlib import Path
@@ -118,3 +119,34 @@ def test_a_grid_that_does_not_fit_into_memory_is_refused(
 def test_how_much_memory_is_free_is_known_on_linux() -> None:
     free = free_memory()
     assert free is None or 10**6 < free < 10**14
+
+
+def test_grid(model: Path, tmp_path: Path) -> None:
+    out = tmp_path / "field.npz"
+    result = done("decode", model, "-o", out, "--grid", 24, "--resolution", 32, "--json")
+    report = json.loads(result.stdout)
+    with np.load(out, allow_pickle=False) as file:
+        assert list(file["sdf"].shape) == report["samples"] == [24, 24, 24]
+        assert file["origin"].tolist() == report["origin"]
+        assert float(file["spacing"]) == report["spacing"]
+        assert file["sdf"].min() < 0 < file["sdf"].max()
+    refused(nisp("decode", model, "-o", out, "--grid", 24), "expected no file", "--force")
+    again = done("decode", model, "-o", out, "--grid", 24, "--resolution", 32, "--force")
+    assert f"{out}: 24 x 24 x 24 distances" in again.stdout
+
+
+@pytest.mark.parametrize(
+    ("name", "options", "said"),
+    [
+        ("out.glb", ("--grid", 24), "--grid: expected with a .npz"),
+        ("out.npz", (), "--grid: expected with a .npz"),
+        ("out.npz", ("--grid", 24, "--target-error", 1), "--grid and --target-error"),
+        ("out.npz", ("--grid", 24, "--keep-spurious"), "--grid and --keep-spurious"),
+        ("out.npz", ("--grid", 2000), "16 to 1024"),
+    ],
+)
+def test_a_grid_is_no_mesh(
+    model: Path, tmp_path: Path, name: str, options: tuple[object, ...], said: str
+) -> None:
+    refused(nisp("decode", model, "-o", tmp_path / name, *options), said, "expected")
+    assert not list(tmp_path.glob("out.*"))
