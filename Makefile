@@ -3,6 +3,7 @@
 # make docs: the page of the public names, into build/api
 # make package: sdist and wheel into build/dist, tried in clean environments of every Python that is there
 # make web: what the tests of web/ want besides node and Chromium, by npm
+# make warp: the example of docs/physics.md, in an environment of its own with NVIDIA Warp, half a gigabyte
 # make fuzz: RUNS files of a coverage-guided fuzzer against the parser
 # make sanitize: the tests of the native kernels with the sanitizers of memory and undefined behavior, threads with that of threads
 # make bench: every codec on the assets in ASSETS, into build/bench/report.html; one to three hours, goes on where it stopped
@@ -14,7 +15,7 @@ TORCH ?= torch==2.13.0
 BIN := .venv/bin
 KERNEL := $(wildcard nispcodec/core/kernel/* nispcodec/train/backend/native/kernel/* nispcodec/infer/native/kernel/*)
 
-.PHONY: setup demo test lint docs package web fuzz sanitize bench
+.PHONY: setup demo test lint docs package web warp fuzz sanitize bench
 
 setup: .venv/ready
 
@@ -56,6 +57,13 @@ package: setup
 
 web:
 	cd web && npm ci --no-audit --no-fund
+
+build/warp/bin/python:
+	$(PYTHON) -m venv build/warp
+	build/warp/bin/pip install --disable-pip-version-check -q warp-lang==1.19.0 numpy==2.4.6 || { rm -r build/warp; exit 1; }
+
+warp: setup build/warp/bin/python
+	$(BIN)/pytest tests/docs/test_physics.py
 
 test: lint docs package
 	$(BIN)/python -m benchmarks.status
