@@ -19,7 +19,7 @@ import numpy as np
 import nispcodec
 from benchmarks.measuring.machine import commit
 from benchmarks.measuring.result_file import write_result
-from nispcodec.core.arrays import Float32Array, Float64Array, FloatArray
+from nispcodec.core.arrays import Float32Array, Float64Array
 from nispcodec.core.asset import TexturedMesh
 from nispcodec.core.document import Frame
 from nispcodec.extract.decoded_distance import DecodedDistance
@@ -74,8 +74,8 @@ def _points(inner: float, outer: float) -> Float64Array:
 
 
 def _surface_of(mesh: TexturedMesh, frame: Frame) -> MeshSearch:
-    flat: FloatArray = frame.to_normalized(mesh.corners.reshape(-1, 3))
-    return MeshSearch(flat.reshape(-1, 3, 3), np.ones(len(mesh.faces), np.bool_))
+    corners: Float64Array = frame.to_normalized(mesh.corners.reshape(-1, 3)).reshape(-1, 3, 3)
+    return MeshSearch(corners, np.ones(len(corners), np.bool_))
 
 
 @click.command()
