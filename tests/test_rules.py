@@ -279,6 +279,7 @@ TESTED_ELSEWHERE = {
     "io/save.py": "io/test_writers.py",
     "io/write/glb.py": "io/test_writers.py",
     "io/write/losses.py": "io/test_writers.py",
+    "io/write/npz.py": "core/test_sdf_grid.py",
     "io/write/trimesh_geometry.py": "test_trimesh_loader.py",
     "io/write/vertices.py": "io/test_writers.py",
     # Numbers that are known for the same small shapes.
