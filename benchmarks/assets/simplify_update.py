@@ -34,10 +34,13 @@ def missing() -> str | None:
     return None if found == VERSION else wrong
 
 
-def simplified_moving(corners: Corners, faces: int, uv_weight: float) -> Corners:
+def simplified_moving(
+    corners: Corners, faces: int, uv_weight: float, permissive: bool = False
+) -> Corners:
     """About `faces` triangles; vertices that coincide, at seams, move together.
 
-    uv_weight: the error of one unit of UV against the asset's extent. Raises ValueError when
+    uv_weight: the error of one unit of UV against the asset's extent. permissive: seams may open or
+    go, where that costs little, else they stay seams. Raises ValueError when
     nothing is left: bodies smaller than the error are dropped.
     """
     low, extent = corners.positions.min(axis=0), np.ptp(corners.positions, axis=0).max()
@@ -46,7 +49,8 @@ def simplified_moving(corners: Corners, faces: int, uv_weight: float) -> Corners
     parts = [header.astype("<u4"), corners.faces.astype("<u4")]
     parts += [places.astype("<f4"), corners.uvs.astype("<f4")]
     wanted = min(faces, len(corners.faces))
-    data = _converted(b"".join(part.tobytes() for part in parts), wanted, uv_weight)
+    options = [str(wanted), str(uv_weight), *(["Permissive"] if permissive else [])]
+    data = _converted(b"".join(part.tobytes() for part in parts), options)
     count = int(np.frombuffer(data, "<u4", 1)[0])
     if count == 0:
         raise ValueError(f"expected about {faces} of {len(corners.faces)} faces, found none left")
@@ -58,14 +62,13 @@ def simplified_moving(corners: Corners, faces: int, uv_weight: float) -> Corners
     ).only(indices)
 
 
-def _converted(data: bytes, faces: int, uv_weight: float) -> bytes:
+def _converted(data: bytes, options: list[str]) -> bytes:
     library = (PACKAGE / "meshopt_simplifier.js").resolve()
     with tempfile.TemporaryDirectory() as folder:
         before, after = Path(folder, "in"), Path(folder, "out")
         before.write_bytes(data)
         paths = [str(path) for path in (SCRIPT, library, before, after)]
-        command = ["node", *paths, str(faces), str(uv_weight)]
-        done = subprocess.run(command, capture_output=True, text=True)
+        done = subprocess.run(["node", *paths, *options], capture_output=True, text=True)
         if done.returncode != 0:
             raise RuntimeError(f"node {SCRIPT.name}: {done.stderr[-300:]}")
         return after.read_bytes()

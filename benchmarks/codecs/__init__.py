@@ -24,11 +24,16 @@ CODECS = {
     "draco": "Draco",
     "simplified_draco": "simplify + Draco",
     "simplified_update_draco": "simplify with moving vertices + Draco",
+    "simplified_update_meshopt": "simplify with moving vertices + meshopt + zstd",
+    "simplified_gltfpack": "gltfpack with its simplifier",
     "nisp": ".nisp",
     "nisp_paper": ".nisp, the paper's networks",
 }
-# Twenty minutes an asset and an hour pruned: only when asked for.
-OPTIONAL = {"nisp_paper"}
+# Only when asked for: twenty minutes an asset and an hour pruned, and what
+# `benchmarks.rate_distortion.rivals` tries, over a coarser grid.
+OPTIONAL = {
+    "nisp_paper", "simplified_update_draco", "simplified_update_meshopt", "simplified_gltfpack",
+}  # fmt: skip
 # Two points of these at once would stand in each other's way.
 EVERY_CORE = {"nisp", "nisp_paper"}
 

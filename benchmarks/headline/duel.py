@@ -22,7 +22,7 @@ from benchmarks.measuring.machine import commit
 from benchmarks.measuring.result_file import Record, read_result, write_result
 from benchmarks.measuring.target import Asked, Target
 from benchmarks.rate_distortion.rows import Row, from_csv, row
-from benchmarks.rate_distortion.summary import OURS, RIVAL, duels
+from benchmarks.rate_distortion.summary import OURS, RIVALS, duels
 
 PRECISE = ("spot", "food_apple_01", "chess_king", "tea_set_01")
 POINTS = Path("benchmarks/results/bench.csv")
@@ -82,7 +82,7 @@ def main(points: Path, output: Path) -> None:
     """Print the table and write it as JSON."""
     records = read_result(MAIN_JOB)["assets"]
     everyone = from_csv(points.read_text(encoding="utf-8"))
-    rivals = [each for each in everyone if each["codec"] == RIVAL]
+    rivals = [each for each in everyone if each["codec"] in RIVALS]
     rows = [*rivals, *our_rows(records)]
     table = {name: duel(rows, name) for name in records}
     means = {

@@ -10,7 +10,12 @@ import numpy as np
 from benchmarks.rate_distortion.bjontegaard import delta_rate, front
 from benchmarks.rate_distortion.rows import ERRORS, Row, curve, pairs
 
-OURS, RIVAL = "nisp", "simplified_draco"
+OURS = "nisp"
+RIVALS = (
+    "draco", "simplified_draco", "simplified_update_draco", "simplified_update_meshopt",
+    "simplified_gltfpack",
+)  # fmt: skip
+"""The codecs whose best settings are the line to beat."""
 LEVELS = {
     "distance": (2e-3, 1.5e-3, 1e-3, 7e-4, 5e-4, 3.5e-4),
     "uv": (2e-2, 1e-2, 5e-3, 2e-3),
@@ -38,25 +43,33 @@ def summarized(rows: Sequence[Row]) -> Summary:
 def delta_rates(rows: Sequence[Row], asset: str) -> dict[str, float | None]:
     """Bjontegaard-delta rate of ours against the rival, for every error; None with few points."""
     both = {
-        error: [pairs(curve(rows, asset, codec, error), error) for codec in (RIVAL, OURS)]
+        error: [
+            pairs(points, error)
+            for points in (rivals(rows, asset, error), curve(rows, asset, OURS, error))
+        ]
         for error in ERRORS
     }
     return {error: delta_rate(*curves) for error, curves in both.items()}
 
 
+def rivals(rows: Sequence[Row], asset: str, error: str) -> list[Row]:
+    """The points of every rival that have this error."""
+    return [each for codec in RIVALS for each in curve(rows, asset, codec, error)]
+
+
 def duels(rows: Sequence[Row], asset: str) -> list[Summary]:
-    """Each of our points, and the fewest bytes with which the rival is as good.
+    """Each of our points, and the fewest bytes with which a rival is as good.
 
     In the distance; in the UVs (mean, median); in distance and mean UV error at once. None where
-    no setting of the rival is.
+    no setting of a rival is.
     """
-    rivals = curve(rows, asset, RIVAL, "distance")
+    theirs = rivals(rows, asset, "distance")
     demands = [["distance"], ["uv"], ["uv_median"], ["distance", "uv"]]
     return [
         {
             "setting": ours["setting"],
             "bytes": ours["bytes"],
-            "rival_bytes": {" and ".join(names): _fewest(rivals, ours, names) for names in demands},
+            "rival_bytes": {" and ".join(names): _fewest(theirs, ours, names) for names in demands},
         }
         for ours in curve(rows, asset, OURS, "distance")
     ]
@@ -90,8 +103,12 @@ def costs(rows: Sequence[Row], codec: str) -> dict[str, float | None]:
 def _fewest(rivals: Sequence[Row], ours: Row, names: Sequence[str]) -> int | None:
     if any(ours[name] is None for name in names):
         return None
-    good = [rival for rival in rivals if all(rival[name] <= ours[name] for name in names)]
+    good = [rival for rival in rivals if all(_within(rival[name], ours[name]) for name in names)]
     return min((rival["bytes"] for rival in good), default=None)
+
+
+def _within(value: float | None, limit: float) -> bool:
+    return value is not None and value <= limit
 
 
 def _mean(values: Sequence[float | None]) -> float | None:

@@ -69,7 +69,7 @@ RESULTS = (
         beside=("bench.csv",),
         asks="benchmarks.rate_distortion.command",
     ),
-    CommittedResult("peers.json", "benchmarks.rate_distortion.peers", (*METRICS, *RIVALS)),
+    CommittedResult("rivals.json", "benchmarks.rate_distortion.rivals", (*METRICS, *RIVALS)),
     CommittedResult(
         "paper.json",
         "benchmarks.paper",

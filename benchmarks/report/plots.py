@@ -25,6 +25,8 @@ COLORS = {
     "draco": "#2a7f3f",
     "simplified_draco": "#1f5fbf",
     "simplified_update_draco": "#4f9fe0",
+    "simplified_update_meshopt": "#9b7fd0",
+    "simplified_gltfpack": "#b08fc8",
     "nisp": "#d62f2f",
     "nisp_paper": "#e8953a",
 }

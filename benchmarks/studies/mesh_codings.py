@@ -18,15 +18,15 @@ from pathlib import Path
 import click
 import DracoPy
 import numpy as np
-import zstandard
 
 from benchmarks.assets.corners import Corners, corners_of
 from benchmarks.assets.simplify import simplified
 from benchmarks.assets.source import Source, sources
-from benchmarks.codecs import Setting, draco
+from benchmarks.codecs import Setting, draco, meshopt
+from benchmarks.codecs.meshopt import on_grid
 from benchmarks.measuring.machine import commit, machine
 from benchmarks.measuring.result_file import Record, write_result
-from nispcodec.core.arrays import AnyArray, Int32Array, Int64Array
+from nispcodec.core.arrays import Int32Array, Int64Array
 from nispcodec.core.connectivity import connected_components, edge_ids, row_ids
 from nispcodec.core.mesh_part import MeshPart
 from nispcodec.format import mesh
@@ -34,14 +34,6 @@ from nispcodec.format import mesh
 SHARES = (0.06, 0.18, 0.5, 1.0)
 FACES = (100, 6000)
 SETTINGS: tuple[Setting, ...] = ({"qp": 8, "qt": 9}, {"qp": 10, "qt": 10}, {"qp": 12, "qt": 11})
-LEVEL = 19
-
-
-def on_grid(values: AnyArray, bits: int) -> tuple[Int32Array, float]:
-    """Values (n, c) as integers of `bits` bits over the largest extent, and the step."""
-    extent = float(np.ptp(values, axis=0).max())
-    step = max(extent, 1e-9) / (2**bits - 1)
-    return np.rint((values - values.min(axis=0)) / step).astype(np.int32), step
 
 
 def without_slivers(corners: Corners) -> Corners:
@@ -56,8 +48,8 @@ def without_slivers(corners: Corners) -> Corners:
 def part_of(corners: Corners, setting: Setting) -> MeshPart:
     """The same mesh as a part: equal positions are one vertex, charts end where UVs do."""
     places = row_ids(corners.positions)
-    positions, step = on_grid(corners.positions, int(setting["qp"]))
-    uvs, uv_step = on_grid(corners.uvs, int(setting["qt"]))
+    positions, (*_, step) = on_grid(corners.positions, int(setting["qp"]))
+    uvs, (*_, uv_step) = on_grid(corners.uvs, int(setting["qt"]))
     pairs = row_ids(uvs)
     faces = places[corners.faces]
     materials = corners.materials[corners.faces[:, 0]]
@@ -93,34 +85,6 @@ def _charts(faces: Int64Array, uvs: Int64Array, materials: Int32Array) -> Int32A
     return connected_components(one, other, len(faces))[1]
 
 
-def by_meshoptimizer(corners: Corners, setting: Setting) -> tuple[bytes, Callable[[], object]]:
-    """Index and vertex buffer, each in a zstd frame; and what decodes them."""
-    import meshoptimizer as library
-
-    positions, _ = on_grid(corners.positions, int(setting["qp"]))
-    uvs, _ = on_grid(corners.uvs, int(setting["qt"]))
-    columns = np.column_stack([positions, uvs, corners.materials]).astype(np.uint16)
-    rows, inverse = np.unique(columns, axis=0, return_inverse=True)
-    indices = inverse[corners.faces.ravel()].astype(np.uint32)
-    rows = np.ascontiguousarray(rows)
-    ordered, fetched, size = np.empty_like(indices), np.empty_like(rows), rows[0].nbytes
-    library.optimize_vertex_cache(ordered, indices, len(indices), len(rows))
-    used = library.optimize_vertex_fetch(fetched, ordered, rows, len(ordered), len(rows), size)
-    parts = [
-        library.encode_index_buffer(ordered, len(ordered), used),
-        library.encode_vertex_buffer(fetched[:used].copy(), used, size),
-    ]
-    frames = [zstandard.ZstdCompressor(LEVEL).compress(bytes(part)) for part in parts]
-
-    def decode() -> None:
-        first, second = (zstandard.ZstdDecompressor().decompress(frame) for frame in frames)
-        library.decode_index_buffer(len(ordered), 4, first)
-        # Of one item a vertex: the binding allocates that many items, whatever their size.
-        library.decode_vertex_buffer(used, size, second, dtype=np.dtype((np.void, size)))
-
-    return b"".join(frames), decode
-
-
 def seconds(call: Callable[[], object]) -> float:
     """Of the processor, the better of two."""
     taken = []
@@ -135,7 +99,7 @@ def measured(corners: Corners, setting: Setting) -> Record:
     """Bytes and seconds of decoding, by coder."""
     ours = mesh.encode((part_of(corners, setting),))
     theirs = draco.encode_corners(corners, setting)
-    optimized, decode = by_meshoptimizer(corners, setting)
+    optimized = meshopt.encode_corners(corners, setting)
     return {
         "faces": len(corners.faces),
         "setting": dict(setting),
@@ -143,7 +107,7 @@ def measured(corners: Corners, setting: Setting) -> Record:
         "seconds": {
             "ours": seconds(lambda: mesh.decode(ours)),
             "draco": seconds(lambda: DracoPy.decode(theirs)),
-            "meshoptimizer": seconds(decode),
+            "meshoptimizer": seconds(lambda: meshopt.decode_corners(optimized)),
         },
     }
 

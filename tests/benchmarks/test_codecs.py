@@ -35,6 +35,7 @@ def source(tmp_path_factory: pytest.TempPathFactory) -> Source:
     return made
 
 
+PROTECTED: Setting = {"seams": "protected"}
 # Codec -> setting and the largest mean distance and UV error that its bits explain.
 EXPECTED: dict[str, tuple[Setting, float, float]] = {
     "obj": ({"text": "as it is"}, 1e-12, 1e-3),
@@ -44,12 +45,40 @@ EXPECTED: dict[str, tuple[Setting, float, float]] = {
     "draco": ({"qp": 11, "qt": 10}, 5e-4, 2e-3),
     "simplified_draco": ({"surface": "all", "kept": 0.5, "qp": 11, "qt": 10}, 3e-3, 2e-2),
     "simplified_update_draco": (
-        {"surface": "all", "kept": 0.5, "qp": 11, "qt": 10, "uv_weight": 10.0},
+        {
+            "surface": "all",
+            "kept": 0.5,
+            "qp": 11,
+            "qt": 10,
+            "uv_weight": 10.0,
+            "seams": "protected",
+        },
+        3e-3,
+        2e-2,
+    ),
+    "simplified_update_meshopt": (
+        {
+            "surface": "all",
+            "kept": 0.5,
+            "qp": 11,
+            "qt": 10,
+            "uv_weight": 10.0,
+            "seams": "protected",
+        },
+        3e-3,
+        2e-2,
+    ),
+    "simplified_gltfpack": (
+        {"compression": "cz", "vp": 14, "vt": 12, "kept": 0.5, "seams": "protected"},
         3e-3,
         2e-2,
     ),
     "gltfpack": ({"compression": "cc", "vp": 14, "vt": 12}, 1e-4, 1e-3),
 }
+
+
+FROM_NPM = {"gltfpack", *(name for name in CODECS if name.startswith("simplified_update"))}
+FROM_NPM.add("simplified_gltfpack")
 
 
 @pytest.mark.parametrize("name", EXPECTED)
@@ -126,10 +155,11 @@ def test_every_weight_has_every_count(
     monkeypatch.setattr(simplify_update, "PACKAGE", tmp_path)
     settings = codec("simplified_update_draco").settings(source, quick=True)
     assert {setting["uv_weight"] for setting in settings} == {1.0, 10.0, 100.0}
+    assert {setting["seams"] for setting in settings} == {"protected", "permissive"}
     assert len({str(setting) for setting in settings}) == len(settings)
 
 
-@pytest.mark.parametrize("name", sorted(set(CODECS) - {"gltfpack", "simplified_update_draco"}))
+@pytest.mark.parametrize("name", sorted(set(CODECS) - FROM_NPM))
 def test_a_quick_run_has_fewer_settings(name: str, source: Source) -> None:
     if name == "simplified_draco":
         pytest.importorskip("meshoptimizer", reason="extra `simplify`")
