@@ -2,6 +2,7 @@
 export { parseNISP } from "./decoder/document.js";
 export { NISPError } from "./decoder/errors.js";
 export { Arithmetic } from "./evaluate/arithmetic.js";
+export { gradient } from "./evaluate/gradient.js";
 export { decodeImage, readPixels } from "./evaluate/images.js";
 export { NISPModel } from "./evaluate/model.js";
 export { extractMesh } from "./extract/mesh.js";

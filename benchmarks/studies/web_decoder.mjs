@@ -6,6 +6,7 @@
 import { readFileSync } from "node:fs";
 import { parseNISP } from "../../web/decoder/document.js";
 import { Arithmetic } from "../../web/evaluate/arithmetic.js";
+import { gradient } from "../../web/evaluate/gradient.js";
 import { NISPModel } from "../../web/evaluate/model.js";
 import { extractMesh } from "../../web/extract/mesh.js";
 
@@ -63,7 +64,7 @@ const queries = {
   loops: rate(() => plainLoops({ spec, layers }, points)),
   blocks: rate(() => models.blocks.sdf(points)),
   wasm: rate(() => models.wasm.sdf(points)),
-  wasm_gradient: rate(() => models.wasm.gradient(points)),
+  wasm_gradient: rate(() => gradient(models.wasm, points)),
 };
 const meshes = Object.fromEntries(
   [128, 256].map((resolution) => {

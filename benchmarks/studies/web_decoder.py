@@ -2,22 +2,23 @@
 
     python -m benchmarks.studies.web_decoder --models DIR --assets ../shared/assets [--only spot]
 
-DIR holds NAME.nisp for the assets NAME. Wants node, and terser by `npm ci` in web/. Times are
-processor time of one thread, the least of several runs. Results are kept asset by asset.
+DIR holds NAME.nisp for the assets NAME. Wants node, and esbuild and terser by `npm ci` in web/.
+Times are processor time of one thread, the least of several runs. Results are kept asset by asset.
 """
 
 from __future__ import annotations
 
 import gzip
 import json
+import re
 import subprocess
+from base64 import b64decode
 from collections.abc import Iterator
 from functools import partial
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
 import click
-from nispcodec_web.bundle import bundled
 from nispcodec_web.page import viewer_page
 
 from benchmarks.measuring.build import HERE
@@ -29,11 +30,14 @@ from nispcodec.format.document import inspect
 
 RESULTS = Path("benchmarks/results/web_decoder.json")
 WEB = HERE / "web"
-DECODER = (
-    'import {{ parseNISP }} from "{web}/decoder/document.js";\n'
-    'import {{ NISPModel }} from "{web}/evaluate/model.js";\n'
-    "globalThis.nisp = {{ parseNISP, NISPModel }};\n"
-)
+KERNEL = re.compile(r'"(AGFzb[^"]*)"')
+DECODER = """
+export {{ parseNISP }} from "{web}/decoder/document.js";
+export {{ NISPModel }} from "{web}/evaluate/model.js";
+export {{ withoutOrientation }} from "{web}/evaluate/images.js";
+"""
+MESHES = ("./mesh/section.js", "./meshes.js")
+"""The modules by which the decoder reaches what mesh parts take."""
 TARGETS = [
     Target("parse, s", ("parse_seconds", "least"), 0.02),
     Target("SDF queries / plain loops", ("wasm_over_loops",), 15, at_least=True),
@@ -42,13 +46,16 @@ TARGETS = [
     Target("mesh of 256 cells, first, s", ("meshes", "256", "first_seconds"), 3),
     Target("page without images, bytes", ("page_without_images_bytes",), 120_000),
 ]
+SIZES = [
+    Target("decoder and evaluator, gzip, bytes", ("decoder_gzip_bytes",), 20_000),
+    Target("wasm, bytes", ("wasm_bytes",), 10_000),
+]
 
 
 def asked(result: Record) -> Iterator[Asked]:
     """The targets of each asset, and that of the decoder's size."""
     yield from asked_of_each(result["assets"], lambda _: TARGETS)
-    size = Target("decoder and evaluator, gzip, bytes", ("decoder_gzip_bytes",), 20_000)
-    yield from asked_of_each({"decoder": result["sizes"]}, lambda _: [size])
+    yield from asked_of_each({"decoder": result["sizes"]}, lambda _: SIZES)
 
 
 @click.command(help=__doc__)
@@ -62,19 +69,34 @@ def main(models: Path, assets: Path, only: tuple[str, ...], output: Path) -> Non
 
 
 def decoder_sizes() -> Record:
-    """Bytes of parser and evaluator, minified and then compressed, and of the kernel in it."""
+    """Bytes of parser and evaluator, of these without mesh parts, of the kernel and the page."""
+    kernel = KERNEL.search((WEB / "evaluate" / "kernel_wasm.js").read_text())
+    assert kernel is not None
+    whole, fields = (_minified(left_out).replace(kernel[1], "") for left_out in ((), MESHES))
+    return {
+        "decoder_minified_bytes": len(whole),
+        "decoder_gzip_bytes": _compressed(whole),
+        "decoder_of_fields_gzip_bytes": _compressed(fields),
+        "wasm_bytes": len(b64decode(kernel[1])),
+        "page_bytes": len(viewer_page(b"", "")),
+    }
+
+
+def _minified(left_out: tuple[str, ...]) -> str:
+    """The decoder as a program gets it from a bundler: esbuild, then terser."""
+    tools = WEB / "node_modules" / ".bin"
+    bundler = [tools / "esbuild", "--bundle", "--minify", "--format=esm"]
     with TemporaryDirectory() as name:
         entry = Path(name, "entry.js")
         entry.write_text(DECODER.format(web=WEB))
-        script = bundled(entry)
-    terser = [str(WEB / "node_modules" / ".bin" / "terser"), "-c", "passes=2", "-m", "--toplevel"]
-    small = subprocess.run(terser, input=script.encode(), capture_output=True, check=True).stdout
-    return {
-        "decoder_bytes": len(script),
-        "decoder_minified_bytes": len(small),
-        "decoder_gzip_bytes": len(gzip.compress(small, 9, mtime=0)),
-        "page_bytes": len(viewer_page(b"", "")),
-    }
+        command = [*bundler, *(f"--external:{each}" for each in left_out), entry]
+        script = subprocess.run(command, capture_output=True, check=True).stdout
+    minifier = [tools / "terser", "--module", "-c", "passes=3,unsafe_arrows", "-m"]
+    return subprocess.run(minifier, input=script, capture_output=True, check=True).stdout.decode()
+
+
+def _compressed(script: str) -> int:
+    return len(gzip.compress(script.encode(), 9, mtime=0))
 
 
 def record(model: Path, original: Path, sizes: Record) -> Record:

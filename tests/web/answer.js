@@ -1,5 +1,6 @@
 import { parseNISP } from "../../web/decoder/document.js";
 import { Arithmetic } from "../../web/evaluate/arithmetic.js";
+import { gradient } from "../../web/evaluate/gradient.js";
 import { NISPModel } from "../../web/evaluate/model.js";
 
 /**
@@ -23,7 +24,7 @@ export async function answer(file, points, kernel, decode) {
     chart: [...model.charts(asked)],
     uv: [...model.uv(asked)],
     color: [...model.color(asked, await decode(document.images))],
-    gradient: [...model.gradient(asked).gradients],
+    gradient: [...gradient(model, asked).gradients],
   };
 }
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from base64 import b64encode
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -17,6 +18,7 @@ from nispcodec.core.mesh_part import MeshPart
 from nispcodec.format import mesh, pack
 from nispcodec.model import NispModel
 from tests.format.mesh.parts import box, grid, part
+from tests.web.mesh_documents import document as mesh_document
 from tests.web.mesh_documents import documents
 from tests.web.programs import HERE, answers, run_node
 from tests.web.test_decoder import images
@@ -176,6 +178,23 @@ def test_triangles_are_handed_over_as_they_are(name: str, tmp_path: Path) -> Non
     normals = np.reshape(found["normals"], (-1, 3))
     assert np.abs(np.linalg.norm(normals, axis=1) - 1).max() < 1e-5
     assert set(found["charts"]) <= set(range(len(document.chart_materials)))
+
+
+def test_normals_are_smooth_between_creases_whatever_the_triangles(tmp_path: Path) -> None:
+    made = box()
+    rim = {0, 1, 2, 3}  # The side at x = 0, whose four edges are creases.
+    edges = np.stack([made.faces, np.roll(made.faces, -1, axis=1)], axis=2)
+    diagonal = (np.array([[0, 3]]) == np.sort(edges, axis=2)).all(axis=2)
+    creases = np.isin(edges, list(rim)).all(axis=2) & ~diagonal
+    broken = replace(made, creases=creases, step=0.05)
+    (tmp_path / "model.nisp").write_bytes(pack(mesh_document(broken)))
+    found = json.loads(run_node(HERE / "meshes.mjs", "--extract", tmp_path / "model.nisp"))[0]
+    positions = np.reshape(found["positions"], (-1, 3))
+    outwards = np.sign(positions - positions.mean(axis=0))
+    for normal, sides in zip(np.reshape(found["normals"], (-1, 3)), outwards, strict=True):
+        ways = [sides] if sides[0] > 0 else [sides * (1, 0, 0), sides * (0, 1, 1)]
+        assert min(np.abs(normal - way / np.linalg.norm(way)).max() for way in ways) < 1e-6
+    assert len(positions) == 4 + 2 * 4
 
 
 def test_a_mixed_file_has_both_surfaces(tmp_path: Path) -> None:

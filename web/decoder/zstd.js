@@ -8,33 +8,35 @@ import { NISPError } from "./errors.js";
 
 const MAGIC = 0xfd2fb528;
 const MAX_BLOCK = 1 << 17;
-const LITERAL_LENGTHS = codeTable("0 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15", [1, 1, 1, 1, 2, 2, 3, 3, 4, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16]);
-const MATCH_LENGTHS = codeTable(
-  "3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 20 21 22 23 24 25 26 27 28 29 30 31 32 33 34",
-  [1, 1, 1, 1, 2, 2, 3, 3, 4, 4, 5, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16],
-);
-const DEFAULT_LITERAL_LENGTHS = [4, 3, 2, 2, 2, 2, 2, 2, 2, 2, 2, 2, 2, 1, 1, 1, 2, 2, 2, 2, 2, 2, 2, 2, 2, 3, 2, 1, 1, 1, 1, 1, -1, -1, -1, -1];
-const DEFAULT_MATCH_LENGTHS = [
-  1, 4, 3, 2, 2, 2, 2, 2, 2, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, -1, -1, -1, -1,
-  -1, -1, -1,
-];
-const DEFAULT_OFFSETS = [1, 1, 1, 1, 1, 1, 2, 2, 2, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, -1, -1, -1, -1, -1];
 
-/**
- * The codes of a length: those that are their own value, then one for each number of extra bits.
- * @param {string} plain
- * @param {number[]} extra
- */
-function codeTable(plain, extra) {
-  const base = plain.split(" ").map(Number);
-  const bits = base.map(() => 0);
-  let next = base[base.length - 1] + 1;
-  for (const width of extra) {
-    base.push(next);
-    bits.push(width);
-    next += 2 ** width;
-  }
-  return { base, bits };
+const CUT_OFF = "one that is cut off";
+const LEFT_OVER = "bytes left over";
+const RESERVED = "a reserved value";
+const UNEVEN = "a code that does not sum";
+const OTHER_SIZE = "another size";
+const NO_TABLE = "a table to repeat that is not there";
+
+/** @typedef {{bits: number, symbol: ArrayLike<number>, width: ArrayLike<number>, base: ArrayLike<number>}} FSETable */
+
+/** Literal lengths, offsets, match lengths: the last symbol, the bits of a table at most, of the default one, and its counts. */
+const KINDS = [
+  { most: 35, log: 9, bits: 6, plain: [4, 3, 2, 2, 2, 2, 2, 2, 2, 2, 2, 2, 2, 1, 1, 1, 2, 2, 2, 2, 2, 2, 2, 2, 2, 3, 2, 1, 1, 1, 1, 1, -1, -1, -1, -1] },
+  { most: 31, log: 8, bits: 5, plain: [1, 1, 1, 1, 1, 1, 2, 2, 2, ...ones(15), -1, -1, -1, -1, -1] },
+  { most: 52, log: 9, bits: 6, plain: [1, 4, 3, 2, 2, 2, 2, 2, 2, ...ones(37), -1, -1, -1, -1, -1, -1, -1] },
+];
+
+/** @param {number} count */
+function ones(count) {
+  return new Array(count).fill(1);
+}
+
+const LITERAL_LENGTHS = codeTable(0, 16, [1, 1, 1, 1, 2, 2, 3, 3, 4, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16]);
+const MATCH_LENGTHS = codeTable(3, 32, [1, 1, 1, 1, 2, 2, 3, 3, 4, 4, 5, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16]);
+
+/** The codes of a length: some without extra bits, then one for each number of them. @param {number} next @param {number} plain @param {number[]} extra */
+function codeTable(next, plain, extra) {
+  const bits = [...new Array(plain).fill(0), ...extra];
+  return { bits, base: bits.map((width) => (next += 2 ** width) - 2 ** width) };
 }
 
 /**
@@ -46,7 +48,7 @@ export function unzstd(data, size, section) {
   try {
     return new Frame(data, size).decode();
   } catch (why) {
-    if (!(why instanceof Malformed || why instanceof RangeError)) throw why;
+    if (!(why instanceof Malformed)) throw why;
     throw new NISPError(section, "zstd frame", `one sound frame of ${size} bytes`, why.message);
   }
 }
@@ -58,243 +60,268 @@ function sound(holds, found) {
   if (!holds) throw new Malformed(found);
 }
 
-/** @typedef {{bits: number, symbol: Uint8Array, width: Uint8Array, base: Uint16Array}} FSETable */
-
 class Frame {
   /** @param {Uint8Array} data @param {number} size */
   constructor(data, size) {
     this.data = data;
-    this.view = new DataView(data.buffer, data.byteOffset, data.byteLength);
-    this.size = size;
+    /** What is read ends here: the frame, a block, or a part of one. */
+    this.end = data.length;
     this.at = 0;
     this.out = new Uint8Array(size);
     this.written = 0;
     this.offsets = [1, 4, 8];
     /** @type {{bits: number, symbol: Uint8Array, width: Uint8Array}|null} */
     this.huffman = null;
-    /** @type {(FSETable|null)[]} */
-    this.tables = [null, null, null];
+    /** @type {FSETable[]} */
+    this.tables = [];
+  }
+
+  /** Where `count` bytes begin, which are then behind. @param {number} count */
+  skip(count) {
+    this.at += count;
+    sound(this.at <= this.end, CUT_OFF);
+    return this.at - count;
+  }
+
+  /** A little-endian integer. @param {number} width in bytes */
+  uint(width) {
+    const start = this.skip(width);
+    let value = 0;
+    while (width--) value = value * 256 + this.data[start + width];
+    return value;
   }
 
   decode() {
     this.header();
-    let last = 0;
-    while (!last) last = this.block();
-    sound(this.written === this.size, `${this.written} bytes of content`);
-    sound(this.at === this.data.length, "bytes after it");
+    while (!this.block());
+    sound(this.written === this.out.length, OTHER_SIZE);
+    sound(this.at === this.end, LEFT_OVER);
     return this.out;
   }
 
   header() {
-    sound(this.view.getUint32(0, true) === MAGIC, "another magic number");
-    const descriptor = this.view.getUint8(4);
-    const single = descriptor & 32;
+    sound(this.uint(4) === MAGIC, "another magic number");
+    const descriptor = this.uint(1);
     const form = descriptor >> 6;
-    this.at = 5;
-    sound(!(descriptor & 8), "a reserved bit");
-    if (!single) this.at++;
-    sound(!(descriptor & 7), "a dictionary or a checksum");
-    sound(form || single, "no content size");
-    const stated = [
-      () => this.view.getUint8(this.at),
-      () => this.view.getUint16(this.at, true) + 256,
-      () => this.view.getUint32(this.at, true),
-      () => Number(this.view.getBigUint64(this.at, true)),
-    ][form]();
-    this.at += 1 << form;
-    sound(stated === this.size, `a content size of ${stated}`);
+    sound(!(descriptor & 15), "a dictionary, a checksum or a reserved bit");
+    if (!(descriptor & 32)) {
+      sound(form, "no content size");
+      this.skip(1);
+    }
+    sound(this.uint(1 << form) + (form === 1 ? 256 : 0) === this.out.length, OTHER_SIZE);
   }
 
   /** Decodes one block; whether it was the last. */
   block() {
-    const head = this.view.getUint16(this.at, true) | (this.view.getUint8(this.at + 2) << 16);
+    const head = this.uint(3);
     const size = head >> 3;
     const kind = (head >> 1) & 3;
-    this.at += 3;
-    sound(size <= MAX_BLOCK, "a block that is too large");
-    sound(this.at + (kind === 1 ? 1 : size) <= this.data.length, "a block that is cut off");
-    if (kind === 0) this.put(this.data.subarray(this.at, this.at + size));
-    else if (kind === 1) this.put(new Uint8Array(size).fill(this.data[this.at]));
-    else {
-      sound(kind === 2, "a reserved block type");
-      this.compressed(this.at, this.at + size);
-    }
-    this.at += kind === 1 ? 1 : size;
+    sound(kind < 3 && size <= MAX_BLOCK, RESERVED);
+    const start = this.skip(kind === 1 ? 1 : size);
+    if (kind === 2) this.within(start, this.at, () => this.compressed());
+    else this.put(this.repeated(kind, start, size));
     return head & 1;
+  }
+
+  /** Bytes as they are, or one of them so many times. @param {number} kind @param {number} start @param {number} size */
+  repeated(kind, start, size) {
+    return kind ? new Uint8Array(size).fill(this.data[start]) : this.data.subarray(start, start + size);
+  }
+
+  /** Reads a part, which must end where it says. @template T @param {number} start @param {number} end @param {() => T} read */
+  within(start, end, read) {
+    const outer = this.end;
+    [this.at, this.end] = [start, end];
+    const found = read();
+    sound(this.at === end, LEFT_OVER);
+    this.end = outer;
+    return found;
   }
 
   /** @param {Uint8Array} bytes */
   put(bytes) {
-    sound(this.written + bytes.length <= this.size, "more content than stated");
+    sound(this.written + bytes.length <= this.out.length, OTHER_SIZE);
     this.out.set(bytes, this.written);
     this.written += bytes.length;
   }
 
-  /** @param {number} at @param {number} end */
-  compressed(at, end) {
-    const literals = this.literals(at, end);
-    at = literals.end;
-    let count = this.data[at++];
-    if (count === 255) {
-      count = this.data[at] + (this.data[at + 1] << 8) + 0x7f00;
-      at += 2;
-    } else if (count > 127) count = ((count - 128) << 8) + this.data[at++];
-    sound(at <= end, "a block that is cut off");
-    if (count === 0) {
-      sound(at === end, "bytes after a block");
-      this.put(literals.bytes);
-      return;
-    }
-    const modes = this.data[at++];
-    sound(!(modes & 3), "reserved modes");
-    const kinds = [
-      { most: 35, log: 9, plain: DEFAULT_LITERAL_LENGTHS, bits: 6 },
-      { most: 31, log: 8, plain: DEFAULT_OFFSETS, bits: 5 },
-      { most: 52, log: 9, plain: DEFAULT_MATCH_LENGTHS, bits: 6 },
-    ];
-    kinds.forEach((kind, i) => {
-      at = this.sequenceTable(i, (modes >> (6 - 2 * i)) & 3, kind, at, end);
-    });
-    this.sequences(count, literals.bytes, new BackwardBits(this.data, at, end));
+  compressed() {
+    const literals = this.literals();
+    let count = this.uint(1);
+    if (count > 127) count = count < 255 ? (count - 128) * 256 + this.uint(1) : this.uint(2) + 0x7f00;
+    if (!count) return this.put(literals);
+    const modes = this.uint(1);
+    sound(!(modes & 3), RESERVED);
+    KINDS.forEach((kind, i) => this.sequenceTable(i, (modes >> (6 - 2 * i)) & 3, kind));
+    this.sequences(count, literals, this.backwards());
   }
 
-  /**
-   * @param {number} number 0 literal lengths, 1 offsets, 2 match lengths
-   * @param {number} mode
-   * @param {{most: number, log: number, plain: number[], bits: number}} kind
-   * @param {number} at
-   * @param {number} end
-   */
-  sequenceTable(number, mode, kind, at, end) {
-    if (mode === 0) this.tables[number] = fseTable(kind.plain, kind.bits);
+  /** @param {number} number of the kind @param {number} mode @param {typeof KINDS[0]} kind */
+  sequenceTable(number, mode, { plain, bits, log, most }) {
+    if (mode === 0) this.tables[number] = fseTable(plain, bits);
     if (mode === 1) {
-      sound(at < end && this.data[at] <= kind.most, "an unknown symbol");
-      this.tables[number] = fseTable(oneSymbol(this.data[at++]), 0);
+      const symbol = this.uint(1);
+      sound(symbol <= most, RESERVED);
+      this.tables[number] = { bits: 0, symbol: [symbol], width: [0], base: [0] };
     }
-    if (mode === 2) {
-      const found = readFSE(this.data, at, end, kind.log, kind.most);
-      this.tables[number] = found.table;
-      at = found.end;
-    }
-    sound(this.tables[number], "a table to repeat that is not there");
-    return at;
+    if (mode === 2) this.tables[number] = this.readFSE(log, most);
+    sound(this.tables[number], NO_TABLE);
+  }
+
+  /** What is left of the part, as bits from its end. */
+  backwards() {
+    const start = this.at;
+    return new BackwardBits(this.data, start, (this.at = this.end));
   }
 
   /** @param {number} count @param {Uint8Array} literals @param {BackwardBits} bits */
   sequences(count, literals, bits) {
-    const tables = /** @type {FSETable[]} */ (this.tables);
+    const { tables } = this;
     const states = tables.map((table) => bits.read(table.bits));
     let from = 0;
-    for (let i = 0; i < count; i++) {
+    while (count--) {
       const [literal, offset, match] = tables.map((table, k) => table.symbol[states[k]]);
       const distance = 2 ** offset + bits.read(offset);
       const length = MATCH_LENGTHS.base[match] + bits.read(MATCH_LENGTHS.bits[match]);
       const run = LITERAL_LENGTHS.base[literal] + bits.read(LITERAL_LENGTHS.bits[literal]);
-      sound(from + run <= literals.length, "too few literals");
-      this.put(literals.subarray(from, from + run));
-      from += run;
+      sound(from + run <= literals.length, CUT_OFF);
+      this.put(literals.subarray(from, (from += run)));
       this.copy(this.offset(distance, run), length);
-      if (i + 1 < count) {
-        for (const k of [0, 2, 1]) states[k] = tables[k].base[states[k]] + bits.read(tables[k].width[states[k]]);
-      }
+      if (count) for (const k of [0, 2, 1]) states[k] = tables[k].base[states[k]] + bits.read(tables[k].width[states[k]]);
     }
-    sound(bits.left === 0, "bits after the sequences");
+    sound(!bits.left, LEFT_OVER);
     this.put(literals.subarray(from));
   }
 
   /** The distance that an offset value means, by the last three. @param {number} value @param {number} run */
   offset(value, run) {
     const known = this.offsets;
-    if (value > 3) {
-      this.offsets = [value - 3, known[0], known[1]];
-      return value - 3;
-    }
-    const place = value - 1 + (run === 0 ? 1 : 0);
-    if (place === 0) return known[0];
-    const found = place === 3 ? known[0] - 1 : known[place];
-    this.offsets = place === 1 ? [found, known[0], known[2]] : [found, known[0], known[1]];
+    const place = value > 3 ? 3 : value - (run ? 1 : 0);
+    const found = value > 3 ? value - 3 : place < 3 ? known[place] : known[0] - 1;
+    known.splice(Math.min(place, 2), 1);
+    known.unshift(found);
     return found;
   }
 
   /** @param {number} distance @param {number} length */
   copy(distance, length) {
     sound(distance > 0 && distance <= this.written, "an offset before the start");
-    sound(this.written + length <= this.size, "more content than stated");
+    sound(this.written + length <= this.out.length, OTHER_SIZE);
     const { out } = this;
     for (let i = 0; i < length; i++, this.written++) out[this.written] = out[this.written - distance];
   }
 
-  /** @param {number} at @param {number} end @returns {{bytes: Uint8Array, end: number}} */
-  literals(at, end) {
-    const kind = this.data[at] & 3;
-    const form = (this.data[at] >> 2) & 3;
-    if (kind > 1) return this.huffmanLiterals(kind, form, at, end);
-    const width = form === 3 ? 3 : form === 1 ? 2 : 1;
-    let size = 0;
-    for (let i = width; i-- > 0; ) size = size * 256 + this.data[at + i];
-    size = Math.floor(size / (width === 1 ? 8 : 16));
-    at += width;
-    const stored = kind === 0 ? size : 1;
-    sound(size <= MAX_BLOCK && at + stored <= end, "literals that are cut off");
-    const bytes = kind === 0 ? this.data.subarray(at, at + size) : new Uint8Array(size).fill(this.data[at]);
-    return { bytes, end: at + stored };
+  literals() {
+    const head = this.data[this.at];
+    const [kind, form] = [head & 3, (head >> 2) & 3];
+    if (kind > 1) return this.huffmanLiterals(kind, form);
+    const size = form & 1 ? this.uint(form === 1 ? 2 : 3) >> 4 : this.uint(1) >> 3;
+    sound(size <= MAX_BLOCK, RESERVED);
+    return this.repeated(kind, this.skip(kind ? 1 : size), size);
   }
 
-  /** @param {number} kind @param {number} form @param {number} at @param {number} end */
-  huffmanLiterals(kind, form, at, end) {
-    const width = form < 2 ? 3 : form + 2;
-    const bits = form < 2 ? 10 : form === 2 ? 14 : 18;
-    sound(at + width <= end, "literals that are cut off");
-    let head = 0;
-    for (let i = width; i-- > 0; ) head = head * 256 + this.data[at + i];
-    head = Math.floor(head / 16);
-    const size = head % 2 ** bits;
-    const stop = at + width + Math.floor(head / 2 ** bits);
-    sound(stop <= end && size <= MAX_BLOCK, "literals that are cut off");
-    at += width;
-    if (kind === 2) at = this.huffmanTable(at, stop);
-    sound(this.huffman, "a Huffman table to repeat that is not there");
+  /** @param {number} kind @param {number} form */
+  huffmanLiterals(kind, form) {
+    const long = Math.max(form - 1, 0);
+    const head = Math.floor(this.uint(3 + long) / 16);
+    const range = 2 ** (10 + 4 * long);
+    const size = head % range;
+    sound(size <= MAX_BLOCK, RESERVED);
+    const start = this.skip(Math.floor(head / range));
     const bytes = new Uint8Array(size);
-    if (form === 0) this.huffmanStream(bytes, at, stop);
-    else this.fourStreams(bytes, at, stop);
-    return { bytes, end: stop };
+    this.within(start, this.at, () => {
+      if (kind === 2) this.huffmanTable();
+      sound(this.huffman, NO_TABLE);
+      if (form) this.fourStreams(bytes);
+      else this.huffmanStream(bytes);
+    });
+    return bytes;
   }
 
-  /** @param {Uint8Array} bytes @param {number} at @param {number} stop */
-  fourStreams(bytes, at, stop) {
-    sound(at + 6 <= stop, "streams that are cut off");
+  /** @param {Uint8Array} bytes */
+  fourStreams(bytes) {
+    const lengths = [2, 2, 2].map((width) => this.uint(width));
     const share = Math.ceil(bytes.length / 4);
-    sound(3 * share <= bytes.length, "too few literals for four streams");
-    let start = at + 6;
-    for (let i = 0; i < 4; i++) {
-      const end = i < 3 ? start + this.view.getUint16(at + 2 * i, true) : stop;
-      sound(end <= stop, "streams that are cut off");
-      this.huffmanStream(bytes.subarray(i * share, i < 3 ? (i + 1) * share : bytes.length), start, end);
-      start = end;
-    }
+    sound(3 * share <= bytes.length, OTHER_SIZE);
+    lengths.forEach((length, i) => {
+      const start = this.skip(length);
+      this.within(start, this.at, () => this.huffmanStream(bytes.subarray(i * share, (i + 1) * share)));
+    });
+    this.huffmanStream(bytes.subarray(3 * share));
   }
 
-  /** @param {Uint8Array} bytes @param {number} at @param {number} stop */
-  huffmanStream(bytes, at, stop) {
+  /** @param {Uint8Array} bytes */
+  huffmanStream(bytes) {
     const { bits: most, symbol, width } = /** @type {NonNullable<typeof this.huffman>} */ (this.huffman);
-    const bits = new BackwardBits(this.data, at, stop);
+    const bits = this.backwards();
     for (let i = 0; i < bytes.length; i++) {
       const code = bits.peek(most);
       bytes[i] = symbol[code];
-      bits.skip(width[code]);
+      bits.left -= width[code];
     }
-    sound(bits.left === 0, "bits after the literals");
+    sound(!bits.left, LEFT_OVER);
   }
 
-  /** Reads the weights of a Huffman code; where they end. @param {number} at @param {number} stop */
-  huffmanTable(at, stop) {
-    const head = this.data[at++];
-    const end = head < 128 ? at + head : at + ((head - 126) >> 1);
-    sound(end <= stop, "a Huffman table that is cut off");
-    const weights = head < 128 ? fseWeights(this.data, at, end) : [];
-    for (let i = 0; i < head - 127; i++) weights.push((this.data[at + (i >> 1)] >> (i & 1 ? 0 : 4)) & 15);
+  huffmanTable() {
+    const head = this.uint(1);
+    const start = this.skip(head < 128 ? head : (head - 126) >> 1);
+    const weights = head < 128 ? this.within(start, this.at, () => this.fseWeights()) : [];
+    for (let i = 0; i < head - 127; i++) weights.push((this.data[start + (i >> 1)] >> (i & 1 ? 0 : 4)) & 15);
     this.huffman = huffmanTable(weights);
-    return end;
+  }
+
+  /** Weights of a Huffman code by two states that take turns. */
+  fseWeights() {
+    const { bits: size, symbol, width, base } = this.readFSE(6, 255);
+    const bits = this.backwards();
+    const states = [bits.read(size), bits.read(size)];
+    /** @type {number[]} */
+    const weights = [];
+    for (let turn = 0; weights.length < 255; turn ^= 1) {
+      const state = states[turn];
+      weights.push(symbol[state]);
+      if (bits.left < width[state]) return [...weights, symbol[states[turn ^ 1]]];
+      states[turn] = base[state] + bits.read(width[state]);
+    }
+    throw new Malformed(UNEVEN);
+  }
+
+  /** A table description, bits from the front. @param {number} most bits of the table @param {number} last symbol */
+  readFSE(most, last) {
+    const { data, end } = this;
+    let bit = 8 * this.at;
+    const peek = (/** @type {number} */ count) => {
+      let value = 0;
+      for (let at = bit + count; at-- > bit; ) value = 2 * value + (at < 8 * end ? (data[at >> 3] >> (at & 7)) & 1 : 0);
+      return value;
+    };
+    const bits = 5 + peek(4);
+    bit += 4;
+    sound(bits <= most, RESERVED);
+    /** @type {number[]} */
+    const counts = [];
+    for (let left = (1 << bits) + 1; left > 1; ) {
+      const width = 31 - Math.clz32(left);
+      const short = 2 ** (width + 1) - 1 - left;
+      let value = peek(width);
+      if (value < short) bit += width;
+      else {
+        value = peek(width + 1);
+        if (value >= 2 ** width) value -= short;
+        bit += width + 1;
+      }
+      counts.push(value - 1);
+      left -= Math.abs(value - 1);
+      sound(left > 0, UNEVEN);
+      for (let more = value === 1 ? 3 : 0; more === 3; ) {
+        more = peek(2);
+        bit += 2;
+        for (let i = 0; i < more; i++) counts.push(0);
+      }
+      sound(counts.length <= last + 1 && bit <= 8 * end, UNEVEN);
+    }
+    this.at = (bit + 7) >> 3;
+    return fseTable(counts, bits);
   }
 }
 
@@ -302,7 +329,7 @@ class Frame {
 class BackwardBits {
   /** @param {Uint8Array} data @param {number} start @param {number} end */
   constructor(data, start, end) {
-    sound(end > start && data[end - 1], "a bit string without its mark");
+    sound(end > start && data[end - 1], CUT_OFF);
     this.data = data;
     this.start = start;
     this.left = 8 * (end - start) - Math.clz32(data[end - 1]) + 23;
@@ -310,39 +337,20 @@ class BackwardBits {
 
   /** @param {number} count @returns {number} */
   read(count) {
-    let value = 0;
-    for (let rest = count; rest > 0; ) {
-      const part = Math.min(rest, 16);
-      value = value * 2 ** part + this.peek(part);
-      this.skip(part);
-      rest -= part;
-    }
-    sound(this.left >= 0, "a bit string that is cut off");
+    if (count > 16) return this.read(count - 16) * 65536 + this.read(16);
+    const value = this.peek(count);
+    this.left -= count;
+    sound(this.left >= 0, CUT_OFF);
     return value;
   }
 
   /** The next bits, at most 16. @param {number} count */
   peek(count) {
-    const { data } = this;
     const low = this.left - count;
-    const byte = this.start + (low >> 3);
     let word = 0;
-    if (low >= 0) word = data[byte] | (data[byte + 1] << 8) | (data[byte + 2] << 16);
-    else for (let i = 2; i >= 0; i--) word = (word << 8) | (byte + i >= this.start ? data[byte + i] : 0);
+    for (let i = (low >> 3) + 2; i >= low >> 3; i--) word = (word << 8) | (i < 0 ? 0 : this.data[this.start + i]);
     return (word >> (low & 7)) & ((1 << count) - 1);
   }
-
-  /** @param {number} count */
-  skip(count) {
-    this.left -= count;
-  }
-}
-
-/** @param {number} symbol */
-function oneSymbol(symbol) {
-  const counts = new Array(symbol + 1).fill(0);
-  counts[symbol] = 1;
-  return counts;
 }
 
 /**
@@ -356,105 +364,28 @@ function fseTable(counts, bits) {
   const symbol = new Uint8Array(size);
   let high = size;
   counts.forEach((count, i) => {
-    if (count === -1) symbol[--high] = i;
+    if (count < 0) symbol[--high] = i;
   });
-  const step = (size >> 1) + (size >> 3) + 3;
   let place = 0;
   counts.forEach((count, i) => {
-    for (let k = 0; k < count; k++) {
+    for (; count > 0; count--) {
       symbol[place] = i;
-      do place = (place + step) & (size - 1);
-      while (place >= high && size > 1);
+      do place = (place + (size >> 1) + (size >> 3) + 3) & (size - 1);
+      while (place >= high);
     }
   });
   const next = counts.map(Math.abs);
-  const width = new Uint8Array(size);
-  const base = new Uint16Array(size);
-  for (let i = 0; i < size; i++) {
-    const state = next[symbol[i]]++;
-    width[i] = bits - 31 + Math.clz32(state);
-    base[i] = (state << width[i]) - size;
-  }
-  return { bits, symbol, width, base };
-}
-
-/**
- * A table description, which is read from the front.
- * @param {Uint8Array} data
- * @param {number} start
- * @param {number} end
- * @param {number} most bits of the table
- * @param {number} last symbol
- */
-function readFSE(data, start, end, most, last) {
-  let bit = 8 * start;
-  const peek = (/** @type {number} */ count) => {
-    let value = 0;
-    for (let i = 0; i < count; i++) {
-      const at = bit + i;
-      if (at >> 3 < end) value |= ((data[at >> 3] >> (at & 7)) & 1) << i;
-    }
-    return value;
-  };
-  const bits = 5 + peek(4);
-  bit += 4;
-  sound(bits <= most, "a table that is too large");
-  /** @type {number[]} */
-  const counts = [];
-  let left = (1 << bits) + 1;
-  while (left > 1) {
-    sound(counts.length <= last && bit <= 8 * end, "a table of too many symbols");
-    const width = 32 - Math.clz32(left);
-    const short = (1 << width) - 1 - left;
-    const low = peek(width - 1);
-    let value = low;
-    if (low < short) bit += width - 1;
-    else {
-      value = peek(width);
-      if (value >= 1 << (width - 1)) value -= short;
-      bit += width;
-    }
-    counts.push(value - 1);
-    left -= Math.abs(value - 1);
-    if (value !== 1) continue;
-    for (let more = 3; more === 3; ) {
-      more = peek(2);
-      bit += 2;
-      for (let i = 0; i < more; i++) counts.push(0);
-      sound(counts.length <= last + 1, "a table of too many symbols");
-    }
-  }
-  const stop = (bit + 7) >> 3;
-  sound(left === 1 && stop <= end, "a table that does not sum");
-  return { table: fseTable(counts, bits), end: stop };
-}
-
-/** Weights of a Huffman code by two states that take turns. @param {Uint8Array} data @param {number} at @param {number} end */
-function fseWeights(data, at, end) {
-  const { table, end: start } = readFSE(data, at, end, 6, 255);
-  const bits = new BackwardBits(data, start, end);
-  const states = [bits.read(table.bits), bits.read(table.bits)];
-  /** @type {number[]} */
-  const weights = [];
-  for (let turn = 0; ; turn ^= 1) {
-    const state = states[turn];
-    weights.push(table.symbol[state]);
-    sound(weights.length < 256, "too many weights");
-    if (bits.left < table.width[state]) {
-      weights.push(table.symbol[states[turn ^ 1]]);
-      return weights;
-    }
-    states[turn] = table.base[state] + bits.read(table.width[state]);
-  }
+  const states = Array.from(symbol, (each) => next[each]++);
+  const width = states.map((state) => bits - 31 + Math.clz32(state));
+  return { bits, symbol, width, base: states.map((state, i) => (state << width[i]) - size) };
 }
 
 /** @param {number[]} weights of all symbols but the last, whose weight follows from them */
 function huffmanTable(weights) {
-  const sum = weights.reduce((total, weight) => total + (weight ? 1 << (weight - 1) : 0), 0);
-  sound(sum > 0, "a Huffman code without symbols");
+  const sum = weights.reduce((total, weight) => total + ((1 << weight) >> 1), 0);
   const bits = 32 - Math.clz32(sum);
   const rest = (1 << bits) - sum;
-  sound(bits <= 11 && (rest & (rest - 1)) === 0 && weights.length < 256, "a Huffman code that does not sum");
+  sound(sum && bits <= 11 && !(rest & (rest - 1)) && weights.length < 256, UNEVEN);
   const all = [...weights, 32 - Math.clz32(rest)];
   const symbol = new Uint8Array(1 << bits);
   const width = new Uint8Array(1 << bits);

@@ -27,11 +27,6 @@ export class FieldQueries {
     return this.sdfNetwork.evaluate(points);
   }
 
-  /** Signed distances and their gradients. @param {Float32Array} points */
-  gradient(points) {
-    return this.sdfNetwork.gradient(points);
-  }
-
   /** @param {Float32Array} points @param {boolean} openings whether a point may be on an opening */
   charts(points, openings) {
     if (!this.chartNetwork) return new Int32Array(points.length / 3);

@@ -1,9 +1,6 @@
 import { placedTriangles } from "./placed.js";
-import { areaNormal, CLOSEST, closestTo } from "./triangle.js";
+import { CLOSEST, closestTo } from "./triangle.js";
 import { TriangleSearch } from "./triangle_search.js";
-
-/** Nearer than this, in radii, float32 does not tell which way a point is off. */
-const ON_SURFACE = 1e-6;
 
 /** All copies of a file's mesh parts, to be asked at points: Float32Array (3 n) of the normalized frame. */
 export class MeshQueries {
@@ -28,36 +25,6 @@ export class MeshQueries {
       const distance = Math.sqrt(search.squared);
       return distance && search.inside(x, y, z) ? -distance : distance;
     });
-  }
-
-  /** Signed distances and their gradients; on the surface its normal. @param {Float32Array} points */
-  gradient(points) {
-    const values = this.sdf(points);
-    const gradients = new Float32Array(points.length);
-    values.forEach((value, i) => gradients.set(this.direction(points[3 * i], points[3 * i + 1], points[3 * i + 2], value), 3 * i));
-    return { values, gradients };
-  }
-
-  /** @param {number} x @param {number} y @param {number} z @param {number} value */
-  direction(x, y, z, value) {
-    const { search } = this;
-    const { corners } = this.triangles;
-    search.closest(x, y, z);
-    const at = 9 * search.face;
-    if (Math.abs(value) < ON_SURFACE) return this.outwards(x, y, z, at);
-    closestTo(corners, at, x, y, z);
-    const [a, b, c] = CLOSEST.weights;
-    return [x, y, z].map((place, axis) => (place - (a * corners[at + axis] + b * corners[at + 3 + axis] + c * corners[at + 6 + axis])) / value);
-  }
-
-  /** A face's normal, turned where inside is before it, not behind. @param {number} x @param {number} y @param {number} z @param {number} at */
-  outwards(x, y, z, at) {
-    const normal = areaNormal(this.triangles.corners, at);
-    const length = Math.hypot(...normal) || 1;
-    const [u, v, w] = normal.map((part) => part / length);
-    const [before, behind] = [ON_SURFACE, -ON_SURFACE].map((step) => this.search.inside(x + step * u, y + step * v, z + step * w));
-    const sign = before && !behind ? -1 : 1;
-    return [sign * u, sign * v, sign * w];
   }
 
   /** The charts (n) of the closest triangles. @param {Float32Array} points */

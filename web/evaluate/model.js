@@ -49,20 +49,6 @@ export class NISPModel {
     return found;
   }
 
-  /** Signed distances and their gradients. @param {Float32Array} points */
-  gradient(points) {
-    const { field, meshes } = this;
-    const found = (field ?? /** @type {MeshQueries} */ (meshes)).gradient(points);
-    if (!field || !meshes) return found;
-    const other = meshes.gradient(points);
-    other.values.forEach((value, i) => {
-      if (value >= found.values[i]) return;
-      found.values[i] = value;
-      found.gradients.set(other.gradients.subarray(3 * i, 3 * i + 3), 3 * i);
-    });
-    return found;
-  }
-
   /** The charts (n) of the nearest parts. @param {Float32Array} points @param {boolean} [openings] whether a point may be on an opening */
   charts(points, openings = true) {
     const { field, meshes } = this;

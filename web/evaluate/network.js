@@ -1,9 +1,9 @@
 import { coordinateCount, inputCount } from "../decoder/topology.js";
 
 /** Points of a block: two layers' activations of it stay in a core's fastest cache. */
-const POINTS = 64;
+export const POINTS = 64;
 
-/** @typedef {{weight: number, bias: number, turned: number, rows: number, columns: number, slope: number}} Layer addresses */
+/** @typedef {{weight: number, bias: number, rows: number, columns: number}} Layer addresses */
 
 /** A network ready to be evaluated at many points of the normalized frame. */
 export class NetworkEvaluator {
@@ -17,9 +17,6 @@ export class NetworkEvaluator {
     this.arithmetic = arithmetic;
     this.coordinates = coordinateCount(spec);
     this.inputs = inputCount(spec);
-    this.inputSlopes = 0;
-    /** @type {number|undefined} address of zeros in place of biases */
-    this.nothing = undefined;
     this.affine = spec.conditioning === "chart_affine";
     const values = (/** @type {string} */ name) => tensors.get(name)?.values ?? new Float32Array(0);
     this.embedding = values("embedding");
@@ -42,15 +39,12 @@ export class NetworkEvaluator {
     const scale = hidden && this.spec.activation === "sine" ? this.spec.w0 / Math.PI : 1;
     const rows = bias.length;
     const columns = weight.length / rows;
-    const layer = {
+    return {
       weight: this.matrix(rows, columns, (i, j) => scale * weight[i * columns + j]),
       bias: this.matrix(rows, 1, (i) => scale * bias[i]),
-      turned: this.spec.outputs === 1 ? this.matrix(columns, rows, (i, j) => scale * weight[j * columns + i]) : 0,
       rows,
       columns,
-      slope: hidden && this.spec.outputs === 1 ? this.arithmetic.reserve((rows + 1) * POINTS) : 0,
     };
-    return layer;
   }
 
   /** Stores a matrix, with an even number of rows. @param {number} rows @param {number} columns @param {(i: number, j: number) => number} value */
@@ -75,7 +69,7 @@ export class NetworkEvaluator {
     for (let start = 0; start < total; start += POINTS) {
       const count = Math.min(POINTS, total - start);
       this.enter(points, charts, start, count);
-      const at = this.forward(false) >> 2;
+      const at = this.forward() >> 2;
       if (this.affine && charts) this.addAffine(points, charts, start, count, at);
       this.finish(at);
       use(this.arithmetic.all, at, start, count);
@@ -120,41 +114,6 @@ export class NetworkEvaluator {
       }
     });
     return found;
-  }
-
-  /**
-   * Output `first` less output `second` of each point.
-   * @param {Float32Array} points (3 n) @param {Int32Array} first (n) @param {Int32Array} second (n)
-   */
-  contrast(points, first, second) {
-    const found = new Float32Array(first.length);
-    this.blocks(points, null, (all, at, start, count) => {
-      for (let p = 0; p < count; p++) {
-        found[start + p] = all[at + first[start + p] * POINTS + p] - all[at + second[start + p] * POINTS + p];
-      }
-    });
-    return found;
-  }
-
-  /**
-   * Values and gradients of a network with one output and no conditioning.
-   * @param {Float32Array} points (3 n)
-   * @returns {{values: Float32Array, gradients: Float32Array}} (n), (3 n)
-   */
-  gradient(points) {
-    const total = points.length / 3;
-    const values = new Float32Array(total);
-    const gradients = new Float32Array(3 * total);
-    for (let start = 0; start < total; start += POINTS) {
-      const count = Math.min(POINTS, total - start);
-      this.enter(points, null, start, count);
-      const at = this.forward(true) >> 2;
-      this.finish(at);
-      values.set(this.arithmetic.all.subarray(at, at + count), start);
-      this.backward(at);
-      this.leave(points, start, count, gradients);
-    }
-    return { values, gradients };
   }
 
   /** Inputs of a block of points. @param {Float32Array} points @param {Int32Array|null} charts @param {number} start @param {number} count */
@@ -210,16 +169,16 @@ export class NetworkEvaluator {
     }
   }
 
-  /** Address of the last layer's sums. @param {boolean} slopes whether to keep those of the layers */
-  forward(slopes) {
+  /** Address of the last layer's sums. @param {number[]} [slopes] where to put those of the hidden layers */
+  forward(slopes = []) {
     const { kernel } = this.arithmetic;
     let x = this.input;
-    this.layers.forEach(({ weight, bias, rows, columns, slope }, i) => {
+    this.layers.forEach(({ weight, bias, rows, columns }, i) => {
       const y = this.buffers[i & 1];
       kernel.linear(weight, bias, x, y, rows, columns, POINTS);
       const hidden = i + 1 < this.layers.length;
-      if (hidden && this.spec.activation === "sine") kernel.sine(y, slopes ? slope : 0, rows * POINTS);
-      else if (hidden) this.rectify(y >> 2, slopes ? slope >> 2 : 0, rows * POINTS);
+      if (hidden && this.spec.activation === "sine") kernel.sine(y, slopes[i] ?? 0, rows * POINTS);
+      else if (hidden) this.rectify(y >> 2, slopes[i] >> 2, rows * POINTS);
       x = y;
     });
     return x;
@@ -263,62 +222,5 @@ export class NetworkEvaluator {
         all[at + i * POINTS + p] += sum;
       }
     }
-  }
-
-  /** From the finished output at `at` to the slopes of the inputs, in place of the inputs' buffer. @param {number} at */
-  backward(at) {
-    const { kernel } = this.arithmetic;
-    const last = this.layers.length - 1;
-    let x = this.outputSlopes(at);
-    for (let i = last; i >= 0; i--) {
-      const { turned, rows, columns, slope } = this.layers[i];
-      if (i < last) kernel.multiply(x, slope, rows * POINTS);
-      const y = x === this.buffers[0] ? this.buffers[1] : this.buffers[0];
-      kernel.linear(turned, this.zeros(), x, y, columns, rows, POINTS);
-      x = y;
-    }
-    this.inputSlopes = x >> 2;
-  }
-
-  /** @param {number} at */
-  outputSlopes(at) {
-    const { all } = this.arithmetic;
-    const { output } = this.spec;
-    for (let i = at; i < at + POINTS; i++) {
-      const value = all[i];
-      all[i] = output === "identity" ? 1 : output === "tanh" ? 1 - value * value : value * (1 - value);
-    }
-    return 4 * at;
-  }
-
-  /** Address of zeros in place of biases. */
-  zeros() {
-    this.nothing ??= this.arithmetic.reserve(Math.max(this.inputs, ...this.spec.hidden) + 1);
-    return this.nothing;
-  }
-
-  /** Slopes of the inputs as gradients of the points. @param {Float32Array} points @param {number} start @param {number} count @param {Float32Array} gradients */
-  leave(points, start, count, gradients) {
-    const { all } = this.arithmetic;
-    this.sources().forEach(({ axis, absolute }, row) => {
-      for (let p = 0; p < count; p++) {
-        const at = 3 * (start + p) + axis;
-        gradients[at] += this.coordinateSlope(all, row, p) * (absolute ? Math.sign(points[at]) : 1);
-      }
-    });
-  }
-
-  /** @param {Float32Array} all @param {number} row @param {number} p */
-  coordinateSlope(all, row, p) {
-    const slopes = this.inputSlopes;
-    const { encoding, levels } = this.spec;
-    if (encoding !== "fourier") return all[slopes + row * POINTS + p];
-    let sum = 0;
-    for (let level = 0; level < levels; level++) {
-      const place = 2 * (row * levels + level) * POINTS + p;
-      const [sine, cosine] = [all[(this.input >> 2) + place], all[(this.input >> 2) + place + POINTS]];
-      sum += 2 ** level * Math.PI * (cosine * all[slopes + place] - sine * all[slopes + place + POINTS]);
-    }
-    return sum;
   }
 }

@@ -1,3 +1,4 @@
+import { networkGradient } from "../evaluate/network_gradient.js";
 import { componentsOf, kept, withoutNoise } from "./components.js";
 import { EXTRACTION } from "./config.js";
 import { extractSurface } from "./isosurface.js";
@@ -112,7 +113,7 @@ function groupsOf(metadata, charts) {
 
 /** Unit normals (3 n) by the gradient. @param {FieldQueries} field @param {Float32Array} positions */
 function normalsAt(field, positions) {
-  const { gradients } = field.gradient(positions);
+  const { gradients } = networkGradient(field.sdfNetwork, positions);
   for (let i = 0; i < gradients.length; i += 3) {
     const length = Math.hypot(gradients[i], gradients[i + 1], gradients[i + 2]) || 1;
     for (let k = 0; k < 3; k++) gradients[i + k] /= length;

@@ -1,3 +1,5 @@
+import { networkGradient } from "../evaluate/network_gradient.js";
+
 /**
  * Points (3 n) after Newton steps towards the zero set, along the gradient at their start. A step
  * is taken only where it brings the field nearer to 0, and none leaves `most` along an axis.
@@ -8,7 +10,7 @@
  * @returns {Float32Array}
  */
 export function ontoSurface(network, points, most, steps) {
-  const { values, gradients } = network.gradient(points);
+  const { values, gradients } = networkGradient(network, points);
   const moved = points.slice();
   const trial = new Float32Array(points.length);
   for (let step = 0; step < steps; step++) {

@@ -1,5 +1,5 @@
 import { DisjointSets } from "../decoder/groups.js";
-import { sideAfter } from "../decoder/mesh/integers.js";
+import { cross, dot, sideAfter } from "../decoder/mesh/integers.js";
 import { cornerOrder, matrixOf, placer } from "../evaluate/placed.js";
 import { EXTRACTION } from "./config.js";
 
@@ -89,29 +89,41 @@ function sharpSides({ faces, twin, positions }) {
   return Uint8Array.from(twin, (other, side) => {
     if (other < 0) return 0;
     const [a, b] = [normals[Math.floor(side / 3)], normals[Math.floor(other / 3)]];
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2] < EXTRACTION.smoothCosine * Math.hypot(...a) * Math.hypot(...b) ? 1 : 0;
+    return dot(a, b) < EXTRACTION.smoothCosine * Math.hypot(...a) * Math.hypot(...b) ? 1 : 0;
   });
 }
 
-/** As long as twice the face's area. @param {Int32Array} faces @param {Int32Array} positions @param {number} corner the face's first */
+/** As long as twice the face's area, in units of the grid. @param {Int32Array} faces @param {Int32Array} positions @param {number} corner the face's first */
 function faceNormal(faces, positions, corner) {
   const at = (/** @type {number} */ i, /** @type {number} */ axis) => positions[3 * faces[corner + i] + axis];
   const [u, v] = [1, 2].map((i) => [0, 1, 2].map((axis) => at(i, axis) - at(0, axis)));
-  return [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]];
+  return cross(u, v);
 }
 
-/** Normals of groups of corners, weighted by area, of unit length; 0 where they cancel. @param {MeshPart} part @param {Int32Array} groups */
+/** Normals of groups of corners, weighted by angle, of unit length; 0 where they cancel. @param {MeshPart} part @param {Int32Array} groups */
 function normalSums({ faces, positions }, groups) {
   const sums = new Float64Array(3 * faces.length);
   for (let corner = 0; corner < faces.length; corner += 3) {
     const normal = faceNormal(faces, positions, corner);
-    for (let i = 0; i < 3; i++) normal.forEach((value, axis) => (sums[3 * groups[corner + i] + axis] += value));
+    const length = Math.hypot(...normal) || 1;
+    for (let i = 0; i < 3; i++) {
+      const share = angleAt(faces, positions, corner + i) / length;
+      normal.forEach((value, axis) => (sums[3 * groups[corner + i] + axis] += share * value));
+    }
   }
   for (let i = 0; i < sums.length; i += 3) {
     const length = Math.hypot(sums[i], sums[i + 1], sums[i + 2]) || 1;
     for (let axis = 0; axis < 3; axis++) sums[i + axis] /= length;
   }
   return sums;
+}
+
+/** A face's angle at a corner: however a flat surface is cut into triangles, it counts the same. @param {Int32Array} faces @param {Int32Array} positions @param {number} corner */
+function angleAt(faces, positions, corner) {
+  const [u, v] = [1, 2].map((steps) =>
+    [0, 1, 2].map((axis) => positions[3 * faces[sideAfter(corner, steps)] + axis] - positions[3 * faces[corner] + axis]),
+  );
+  return Math.atan2(Math.hypot(...cross(u, v)), dot(u, v));
 }
 
 /**

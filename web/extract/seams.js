@@ -4,6 +4,7 @@
  * Every edge whose ends lie on different charts gets one new vertex where the chart changes; both
  * triangles at the edge use it, so that the cut leaves no crack.
  */
+import { POINTS } from "../evaluate/network.js";
 import { EXTRACTION } from "./config.js";
 import { distance } from "./isosurface.js";
 import { ontoSurface } from "./newton.js";
@@ -83,11 +84,11 @@ function bordersOn(network, positions, ends, charts) {
     });
   const low = new Float32Array(ends.length);
   const high = new Float32Array(ends.length).fill(1);
-  const atStart = network.contrast(between(low), first, second);
-  const atEnd = network.contrast(between(high), first, second);
+  const contrast = (/** @type {Float32Array} */ shares) => contrastOf(network, between(shares), first, second);
+  const [atStart, atEnd] = [contrast(low), contrast(high)];
   for (let step = 0; step < EXTRACTION.bisections; step++) {
     const middle = low.map((value, i) => (value + high[i]) / 2);
-    network.contrast(between(middle), first, second).forEach((value, i) => {
+    contrast(middle).forEach((value, i) => {
       if (value > 0) low[i] = middle[i];
       else high[i] = middle[i];
     });
@@ -99,6 +100,20 @@ function bordersOn(network, positions, ends, charts) {
       return Math.min(Math.max(share, clearance), 1 - clearance);
     }),
   );
+}
+
+/**
+ * Output `first` less output `second` of each point.
+ * @param {NetworkEvaluator} network @param {Float32Array} points (3 n) @param {Int32Array} first (n) @param {Int32Array} second (n)
+ */
+function contrastOf(network, points, first, second) {
+  const found = new Float32Array(first.length);
+  network.blocks(points, null, (all, at, start, count) => {
+    for (let p = 0; p < count; p++) {
+      found[start + p] = all[at + first[start + p] * POINTS + p] - all[at + second[start + p] * POINTS + p];
+    }
+  });
+  return found;
 }
 
 class Cutter {

@@ -1,3 +1,4 @@
+import { networkGradient } from "../evaluate/network_gradient.js";
 import { EXTRACTION } from "./config.js";
 
 /**
@@ -91,7 +92,7 @@ export function everyFew(points, count) {
 
 /** Lengths (n) of the gradient. @param {NetworkEvaluator} network @param {Float32Array} points */
 export function slopesAt(network, points) {
-  const { gradients } = network.gradient(points);
+  const { gradients } = networkGradient(network, points);
   return Float32Array.from({ length: points.length / 3 }, (_, i) =>
     Math.hypot(gradients[3 * i], gradients[3 * i + 1], gradients[3 * i + 2]),
   );

@@ -2,10 +2,8 @@ import { demand } from "../errors.js";
 import { bitLength } from "./integers.js";
 import { MEMBER, PRIORS, SLOTS_END } from "./slots.js";
 
-const KNOTS = [
-  22, 36, 60, 98, 162, 267, 439, 720, 1179, 1921, 3108, 4972, 7812, 11955, 17625, 24743, 32768, 40793, 47911, 53581,
-  57724, 60564, 62428, 63615, 64357, 64816, 65097, 65269, 65374, 65438, 65476, 65500, 65514,
-];
+const LOW = [22, 36, 60, 98, 162, 267, 439, 720, 1179, 1921, 3108, 4972, 7812, 11955, 17625, 24743];
+const KNOTS = [...LOW, 32768, ...LOW.map((share) => 65536 - share).reverse()];
 
 /** A probability in 65536ths by its logarithmic odds. @param {number} x */
 function squash(x) {
