@@ -85,13 +85,13 @@ def decoder_sizes() -> Record:
 def _minified(left_out: tuple[str, ...]) -> str:
     """The decoder as a program gets it from a bundler: esbuild, then terser."""
     tools = WEB / "node_modules" / ".bin"
-    bundler = [tools / "esbuild", "--bundle", "--minify", "--format=esm"]
+    bundler = [str(tools / "esbuild"), "--bundle", "--minify", "--format=esm"]
     with TemporaryDirectory() as name:
         entry = Path(name, "entry.js")
         entry.write_text(DECODER.format(web=WEB))
-        command = [*bundler, *(f"--external:{each}" for each in left_out), entry]
+        command = [*bundler, *(f"--external:{each}" for each in left_out), str(entry)]
         script = subprocess.run(command, capture_output=True, check=True).stdout
-    minifier = [tools / "terser", "--module", "-c", "passes=3,unsafe_arrows", "-m"]
+    minifier = [str(tools / "terser"), "--module", "-c", "passes=3,unsafe_arrows", "-m"]
     return subprocess.run(minifier, input=script, capture_output=True, check=True).stdout.decode()
 
 
