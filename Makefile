@@ -4,6 +4,7 @@
 # make package: sdist and wheel into build/dist, tried in clean environments of every Python that is there
 # make web: what the tests of web/ want besides node and Chromium, by npm
 # make warp: the example of docs/physics.md, in an environment of its own with NVIDIA Warp, half a gigabyte
+# make blender: the extension in Blender 4.5, in an environment of its own, one gigabyte; wants Python 3.11
 # make fuzz: RUNS files of a coverage-guided fuzzer against the parser
 # make sanitize: the tests of the native kernels with the sanitizers of memory and undefined behavior, threads with that of threads
 # make bench: every codec on the assets in ASSETS, into build/bench/report.html; one to three hours, goes on where it stopped
@@ -15,7 +16,7 @@ TORCH ?= torch==2.13.0
 BIN := .venv/bin
 KERNEL := $(wildcard nispcodec/core/kernel/* nispcodec/train/backend/native/kernel/* nispcodec/infer/native/kernel/*)
 
-.PHONY: setup demo test lint docs package web warp fuzz sanitize bench
+.PHONY: setup demo test lint docs package web warp blender fuzz sanitize bench
 
 setup: .venv/ready
 
@@ -64,6 +65,14 @@ build/warp/bin/python:
 
 warp: setup build/warp/bin/python
 	$(BIN)/pytest tests/docs/test_physics.py
+
+build/blender/bin/python:
+	$(PYTHON) -m venv build/blender
+	build/blender/bin/pip install --disable-pip-version-check -q bpy==4.5.15 || { rm -r build/blender; \
+		echo 'blender: bpy 4.5.15 has packages for Python 3.11 alone: make blender PYTHON=python3.11'; exit 1; }
+
+blender: setup build/blender/bin/python
+	$(BIN)/pytest tests/addons
 
 test: lint docs package
 	$(BIN)/python -m benchmarks.status
