@@ -106,7 +106,8 @@ def _sides(made: dict[int, Candidate], distance: float) -> tuple[list[int], list
 
 def _logarithm(found: Candidate, distance: float) -> float:
     """Of a candidate's distance against another: above 0 where it is farther off."""
-    return math.log(max(found.errors.distance, sys.float_info.epsilon) / distance)
+    least, most = sys.float_info.epsilon, 2.0  # nothing in the unit ball is farther apart
+    return math.log(min(max(found.errors.distance, least), most) / distance)
 
 
 def _beyond(found: Candidate, distance: float, slope: float) -> float:

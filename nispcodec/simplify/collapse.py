@@ -11,7 +11,7 @@ from nispcodec.core.connectivity import cell_ids
 from nispcodec.core.extras import require
 from nispcodec.simplify.config import CollapseConfig
 from nispcodec.simplify.meshoptimizer_call import PRUNE, fewer_triangles
-from nispcodec.simplify.triangles import Triangles, joined
+from nispcodec.simplify.triangles import Triangles, distinct, joined
 
 
 def collapsed(
@@ -54,7 +54,10 @@ def _simplified(
         faces,
         options,
     )
-    return _rebuilt(triangles, at[found]) if len(found) else None
+    # At seams faces are left with two corners in one place.
+    found = at[found]
+    found = found[distinct(triangles.faces.ravel()[found])]
+    return _rebuilt(triangles, found) if len(found) else None
 
 
 def _attributes(triangles: Triangles) -> Float64Array:

@@ -50,7 +50,7 @@ class Triangles:
         remains.
         """
         welding = welded(mesh)
-        kept = _distinct(welding.positions)
+        kept = distinct(welding.positions)
         if chosen is not None:
             kept &= chosen
         if not kept.any():
@@ -153,10 +153,10 @@ def joined(*pieces: Triangles) -> Triangles:
 
 def distinct_corners(mesh: TexturedMesh) -> BoolArray:
     """(m,) bool: the faces of a mesh that `Triangles.of` takes, whose corners all differ."""
-    return _distinct(row_ids(mesh.positions)[mesh.faces])
+    return distinct(row_ids(mesh.positions)[mesh.faces])
 
 
-def _distinct(corners: Int64Array) -> BoolArray:
+def distinct(corners: Int64Array) -> BoolArray:
     """(m, 3) numbers -> (m,) bool: whether all three differ."""
     return np.asarray((corners != np.roll(corners, 1, axis=1)).all(axis=1))
 

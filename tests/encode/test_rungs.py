@@ -19,13 +19,16 @@ class PowerLaw:
     """In place of a simplifier: three bytes a face, a distance of 1 by the faces, and who asked."""
 
     config: LadderConfig = field(default_factory=LadderConfig)
+    least: int = 0
     asked: list[int] = field(default_factory=list)
     source: Any = field(default_factory=lambda: SimpleNamespace(triangles=range(EVERYTHING)))
 
     def balanced(self, faces: int) -> Candidate:
         self.asked.append(faces)
         made = SimpleNamespace(
-            size=3 * faces, faces=faces, errors=SimpleNamespace(distance=1 / faces)
+            size=3 * faces,
+            faces=faces,
+            errors=SimpleNamespace(distance=1 / faces if faces >= self.least else math.inf),
         )
         return cast(Candidate, made)
 
@@ -69,3 +72,8 @@ def test_each_rung_is_made_once(law: PowerLaw, rungs: Rungs) -> None:
 def test_rising_ends_with_the_first_of_so_many_bytes(rungs: Rungs) -> None:
     sizes = [each.size for each in rungs.rising(4000.0)]
     assert sizes[-1] >= 4000 > sizes[-2]
+
+
+def test_candidates_of_which_nothing_is_left_are_no_trouble(law: PowerLaw, rungs: Rungs) -> None:
+    law.least = 1000
+    assert 900 < rungs.bytes_at(1 / 2000, 600.0, 900.0) < math.inf
