@@ -28,7 +28,10 @@ if TYPE_CHECKING:
 
 REBAKE_FACES = 20_000
 """Making an atlas takes minutes for the hundreds of thousands of triangles of a plain decode."""
-FEWER = "  fewer faces: --faces 20000, or --target-error 1e-3 (mean distance, in radii)"
+FEWER = (
+    "  fewer faces: --faces 5000, or --target-error 1e-3 (mean distance, in radii); "
+    "all of a grid: --resolution 256"
+)
 
 
 @subcommand("decode", "Write a .nisp file as a textured mesh.")
@@ -37,7 +40,9 @@ FEWER = "  fewer faces: --faces 20000, or --target-error 1e-3 (mean distance, in
 @click.option(
     "--mesh", "kind", flag_value="mesh", default="mesh", help="A textured mesh (default)."
 )
-@click.option("--resolution", type=Whole(8, 2048), help="Cells a side; 256 to 512 unless told.")
+@click.option(
+    "--resolution", type=Whole(8, 2048), help="All triangles of a grid of so many cells a side."
+)
 @click.option("--faces", type=Whole(4), help="Simplify to at most this many triangles.")
 @click.option(
     "--target-error",
@@ -80,8 +85,9 @@ def command(
 ) -> None:
     """Write the surface of MODEL (.nisp, or - for standard input) as a textured mesh.
 
-    It is in the units of the original. An OBJ gets its MTL and images beside it,
-    a PLY its images.
+    It is in the units of the original. Of a field, as many triangles are written
+    as keep it within a part of its own error, from a grid of 256 to 512 cells a
+    side. An OBJ gets its MTL and images beside it, a PLY its images.
 
     \b
     Example: nisp decode model.nisp --mesh -o out.glb

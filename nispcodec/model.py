@@ -125,9 +125,10 @@ class NispModel:
         `resolution`: cells along the edge of the cube that is extracted; default 256, up to 512
         where walls are thin, more for thin sheets. `faces`: the most triangles to
         return; the surface is simplified to fit. `error`: as few triangles as keep the mean
-        distance to the field's surface below it, normalized frame. `keep_spurious` keeps the
-        components that are recognized as noise of the field; a warning of the mesh counts those
-        that were dropped.
+        distance to the field's surface below it, normalized frame. By default that is what nobody
+        sees beside the field's own error; with a resolution alone, all triangles of the grid are
+        kept. `keep_spurious` keeps the components that are recognized as noise of the field; a
+        warning of the mesh counts those that were dropped.
         """
         from nispcodec.extract.meshing import textured_mesh
 

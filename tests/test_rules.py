@@ -266,7 +266,9 @@ TESTED_ELSEWHERE = {
     "train/backend/torch/soap.py": "train/backend/torch/test_optimizers.py",
     # Steps of a decode.
     "extract/components.py": "extract/test_isosurface.py",
+    "extract/sliver_operations.py": "extract/test_slivers.py",
     "extract/vertex_charts.py": "extract/test_seams.py",
+    "extract/wedges.py": "extract/test_slivers.py",
     # Parts of one mesh format, and formats that are tested alike.
     "io/read/gltf_buffers.py": "io/test_gltf.py",
     "io/read/gltf_json.py": "io/test_gltf.py",

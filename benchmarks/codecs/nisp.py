@@ -11,6 +11,7 @@ from benchmarks.assets.source import SEED, Source
 from benchmarks.codecs import Setting
 from nispcodec.core.asset import TexturedMesh
 from nispcodec.encode.config import PRESETS
+from nispcodec.extract.meshing import default_resolution
 from nispcodec.format import pack, unpack
 from nispcodec.model import NispModel
 
@@ -39,6 +40,9 @@ def encoded(source: Source, options: Mapping[str, Any]) -> bytes:
 
 
 def decode(data: bytes, source: Source) -> TexturedMesh:
-    """The mesh at the default resolution."""
-    mesh = NispModel(unpack(data)).to_mesh()
+    """The mesh at the default resolution, all of it: errors are to be the codec's alone."""
+    model = NispModel(unpack(data))
+    field = model.document.field
+    cells = default_resolution(field.sdf, field.half_thickness) if field else None
+    mesh = model.to_mesh(cells)
     return replace(mesh, materials=source.mesh.materials, textures=source.mesh.textures)

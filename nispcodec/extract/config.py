@@ -120,23 +120,62 @@ class SeamConfig:
 class SimplifyConfig:
     """Fewer triangles.
 
+    share           of the file's own distance error that simplifying may add, where nobody says how
+                    many triangles are wanted: both together are hardly more than the first
+    usual           distance that it may add to a file that does not tell its error ...
+    finest          ... at least, as 16 bits of a position are no finer ...
+    coarsest        ... and at most: facets show from here on
+    first           triangles that the search for the fewest begins with, as a share of all
+    slope           exponent of triangles by distance: as many are tried next as it foretells ...
+    shrinkage       ... but no less than this share of the last ...
+    more            ... or this many times them, where they were too few ...
+    close           ... and none where they would be more than this share
+    measured        triangles that distances are measured on in this search
     aggressiveness  how eagerly long edges collapse, 0 to 10: above 5 thin parts fold over, below 5
                     counts are missed
     roughness       share of a cell by which vertices are moved first: on exactly flat parts all
                     quadrics are 0 and collapses get stuck
-    shrinkage       triangles that are left after each step of a search for the fewest
+    step            share of the mean distance around a vertex that it is moved by: its neighbors
+                    move too
     face_fittings   tries to meet a number of faces, seams included
     stuck           times as many faces as aimed at: then it is of no use to aim lower
     retreat         how far the copies of a vertex draw back to their own faces, as a share of
                     these faces' size
     """
 
+    share: float = 0.3
+    usual: float = 1e-4
+    finest: float = 2e-5
+    coarsest: float = 2e-4
+    first: float = 0.125
+    slope: float = 1.5
+    shrinkage: float = 0.4
+    more: float = 1.5
+    close: float = 0.95
+    measured: int = 15_000
     aggressiveness: int = 5
     roughness: float = 1e-3
-    shrinkage: float = 0.7
+    step: float = 0.7
     face_fittings: int = 4
     stuck: float = 2.0
     retreat: float = 1e-3
+
+
+@dataclass(frozen=True)
+class SliverConfig:
+    """Which faces of a simplified surface are mended.
+
+    aspect   square of the longest side over the area seen along the field's normal, 2.3 for the
+             best of triangles: worse ones show in shading, better ones follow what is long
+    turned   what is said of worse ones, and of faces that are turned over
+    give     share of a bad face's longest side that the surface may move by
+    rounds   in each of which every vertex changes once at most
+    """
+
+    aspect: float = 50.0
+    turned: float = 1e4
+    give: float = 0.05
+    rounds: int = 12
 
 
 @dataclass(frozen=True)
@@ -148,3 +187,4 @@ class ExtractConfig:
     components: ComponentConfig = field(default_factory=ComponentConfig)
     seams: SeamConfig = field(default_factory=SeamConfig)
     simplify: SimplifyConfig = field(default_factory=SimplifyConfig)
+    slivers: SliverConfig = field(default_factory=SliverConfig)

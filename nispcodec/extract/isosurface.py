@@ -39,7 +39,10 @@ AXES = np.array([axis for _, axis in EDGES], np.int8)
 
 @dataclass(frozen=True)
 class Surface:
-    """positions (n, 3) float32, normalized frame; faces (m, 3) int32; cell: the grid's spacing."""
+    """positions (n, 3) float32, normalized frame; faces (m, 3) int32; cell: the grid's spacing.
+
+    That of a simplified surface is the spacing of a grid that gives as many vertices.
+    """
 
     positions: Float32Array
     faces: Int32Array

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
 
 import numpy as np
@@ -16,12 +17,13 @@ from nispcodec.extract.components import (
     without,
     without_noise,
 )
-from nispcodec.extract.config import ExtractConfig, ResolutionConfig
+from nispcodec.extract.config import ExtractConfig, ResolutionConfig, SimplifyConfig
 from nispcodec.extract.grid import CUBE
 from nispcodec.extract.isosurface import Surface, extract, near_surface
 from nispcodec.extract.mesh_parts import joined
 from nispcodec.extract.seams import cut_along_seams
 from nispcodec.extract.simplify import deviation, simplest, simplified
+from nispcodec.extract.slivers import without_slivers
 from nispcodec.extract.thin_walls import thin_share
 from nispcodec.extract.vertex_charts import vertex_charts
 from nispcodec.infer.field import FieldQueries
@@ -40,20 +42,40 @@ def textured_mesh(
     The mesh's warnings tell what was dropped.
     resolution: cells along the cube's edge, see `default_resolution`; faces: the most triangles
     that the mesh may have, seams included; error: as few triangles as keep the mean distance to the
-    field's surface below it (normalized frame); keep_spurious: do not drop noise of the field.
+    field's surface below it (normalized frame), by default `negligible_error`. Where only a
+    resolution is given, all triangles of that grid are kept. keep_spurious: do not drop noise.
     """
     if document.field is None:
         return joined(document, None), ExtractionReport(0, 0, 0, 0)
     field = document.field
-    surface, report = field_surface(field, resolution, error, keep_spurious, config)
-    if error is not None:
-        surface = simplest(field.sdf, surface, error, config.simplify)
+    grid, report = field_surface(field, resolution, error, keep_spurious, config)
+    if resolution is None and faces is None and error is None:
+        # What the grid itself is off by cannot be had back.
+        own = deviation(field.sdf, grid, config.simplify.measured)
+        error = max(negligible_error(document.info, config.simplify), own)
+    surface = grid if error is None else simplest(field.sdf, grid, error, config.simplify)
     if faces is None:
-        cut, charts = _cut(field, surface, config)
+        cut, charts = _cut(field, surface, surface is not grid, config)
     else:
-        cut, charts = _fitted(field, surface, faces, config)
-    own = _dressed(document, field, *_opened(field, cut, charts, config))
-    return replace(joined(document, own), warnings=(*report.warnings, *_missed(cut, faces))), report
+        cut, charts = _with_at_most(field, surface, faces, config)
+    dressed = _dressed(document, field, *_opened(field, cut, charts, config))
+    return replace(
+        joined(document, dressed), warnings=(*report.warnings, *_missed(cut, faces))
+    ), report
+
+
+def negligible_error(
+    info: Mapping[str, str | int | float | bool], config: SimplifyConfig = SimplifyConfig()
+) -> float:
+    """The mean distance, normalized frame, that nobody sees beside what the networks are off by.
+
+    A part of the distance error that a file tells in its `info`, within limits; the usual one where
+    it tells none.
+    """
+    told = info.get("distance_error")
+    if isinstance(told, bool) or not isinstance(told, int | float) or not told > 0:
+        return config.usual
+    return min(max(config.share * told, config.finest), config.coarsest)
 
 
 def default_resolution(
@@ -99,26 +121,30 @@ def field_surface(
         cells *= 2
 
 
-def _cut(field: Field, surface: Surface, config: ExtractConfig) -> tuple[Surface, Int32Array]:
-    """The surface with one chart a face, and those charts (m,)."""
+def _cut(
+    field: Field, surface: Surface, simple: bool, config: ExtractConfig
+) -> tuple[Surface, Int32Array]:
+    """The surface with one chart a face, and those charts (m,); a simple one without slivers."""
     if field.chart is None:
-        return surface, np.zeros(len(surface.faces), np.int32)
-    charts = vertex_charts(field.chart, surface, config.seams)
-    return cut_along_seams(field.sdf, field.chart, surface, charts, config.seams)
+        cut, charts = surface, np.zeros(len(surface.faces), np.int32)
+    else:
+        charts = vertex_charts(field.chart, surface, config.seams)
+        cut, charts = cut_along_seams(field.sdf, field.chart, surface, charts, config.seams)
+    return without_slivers(field.sdf, cut, charts, config.slivers) if simple else (cut, charts)
 
 
-def _fitted(
+def _with_at_most(
     field: Field, surface: Surface, faces: int, config: ExtractConfig
 ) -> tuple[Surface, Int32Array]:
     """The surface simplified until it has at most `faces` triangles after being cut."""
     target = faces
     for _ in range(config.simplify.face_fittings):
-        fewer = simplified(surface, target, config.simplify)
-        cut, charts = _cut(field, fewer, config)
+        fewer = simplified(field.sdf, surface, target, config.simplify)
+        cut, charts = _cut(field, fewer, fewer is not surface, config)
         # Far from its target it is stuck: asked for less it takes as long, and gives the same.
         if len(cut.faces) <= faces or len(fewer.faces) > config.simplify.stuck * target:
             break
-        target = int(0.99 * target * faces / len(cut.faces))
+        surface, target = fewer, int(0.99 * target * faces / len(cut.faces))
     return cut, charts
 
 

@@ -8,20 +8,28 @@ from __future__ import annotations
 
 import numpy as np
 
+from nispcodec.core.arrays import Float64Array
 from nispcodec.core.network import Network
 from nispcodec.extract.config import SimplifyConfig
 from nispcodec.extract.isosurface import Surface
 from nispcodec.extract.manifold import manifold
-from nispcodec.infer.evaluate import evaluate
+from nispcodec.infer.evaluate import evaluate, gradient
 
 
-def simplified(surface: Surface, faces: int, config: SimplifyConfig = SimplifyConfig()) -> Surface:
+def simplified(
+    network: Network, surface: Surface, faces: int, config: SimplifyConfig = SimplifyConfig()
+) -> Surface:
     """The surface with about `faces` triangles, or as it is when it has no more than that.
 
     Its vertices lie where they serve the triangles best, no longer on the zero set.
     """
     if len(surface.faces) <= faces:
         return surface
+    return _finished(network, surface, _collapsed(surface, faces, config), config)
+
+
+def _collapsed(surface: Surface, faces: int, config: SimplifyConfig) -> Surface:
+    """The surface with about `faces` triangles; some of its parts may have come to touch."""
     from fast_simplification import simplify
 
     # On exactly flat parts all quadrics are 0 and collapses get stuck: make them a little rough.
@@ -29,9 +37,18 @@ def simplified(surface: Surface, faces: int, config: SimplifyConfig = SimplifyCo
     rough = surface.positions + np.random.default_rng(0).normal(0, scale, shape).astype(np.float32)
     eager = config.aggressiveness
     positions, corners = simplify(rough, surface.faces, target_count=faces, agg=eager)
-    fewer = Surface(positions.astype(np.float32), corners.astype(np.int32), surface.cell)
+    return Surface(positions.astype(np.float32), corners.astype(np.int32), surface.cell)
+
+
+def _finished(
+    network: Network, surface: Surface, collapsed: Surface, config: SimplifyConfig
+) -> Surface:
+    """A simplified surface with parts that touch taken apart, fitted to the field."""
     # Sheets taken apart may leave two faces that have nothing but each other.
-    return without_fins(manifold(without_fins(fewer), config.retreat))
+    apart = without_fins(manifold(without_fins(collapsed), config.retreat))
+    coarser = np.sqrt(len(surface.positions) / max(len(apart.positions), 1))
+    spaced = Surface(apart.positions, apart.faces, surface.cell * float(coarser))
+    return fitted(network, spaced, config)
 
 
 def without_fins(surface: Surface) -> Surface:
@@ -53,24 +70,62 @@ def without_fins(surface: Surface) -> Surface:
 def simplest(
     network: Network, surface: Surface, error: float, config: SimplifyConfig = SimplifyConfig()
 ) -> Surface:
-    """The surface with fewer triangles, as long as its deviation stays within `error`."""
-    while True:
-        fewer = simplified(surface, int(config.shrinkage * len(surface.faces)), config)
-        stuck = len(fewer.faces) >= len(surface.faces)
-        if stuck or deviation(network, fewer) > error:
-            return surface
-        surface = fewer
+    """The surface with about as few triangles as keep its deviation within `error`.
+
+    Fewer and fewer are tried, as many as the last ones' deviation foretells; where the first ones
+    are too few already, more. Simplifying what is simple already takes little time.
+    """
+    fewest, share = surface, config.first
+    while share < config.close:
+        fewer = _collapsed(fewest, int(share * len(fewest.faces)), config)
+        foretold = (deviation(network, fewer, config.measured) / error) ** config.slope
+        stuck = len(fewer.faces) >= config.close * len(fewest.faces)
+        if stuck or (foretold > 1 and fewest is not surface):
+            break
+        if foretold > 1:
+            share *= max(foretold, config.more)
+        else:
+            fewest, share = fewer, max(foretold, config.shrinkage)
+    return fewest if fewest is surface else _finished(network, surface, fewest, config)
 
 
-def deviation(network: Network, surface: Surface) -> float:
+def fitted(
+    network: Network, surface: Surface, config: SimplifyConfig = SimplifyConfig()
+) -> Surface:
+    """The surface, its vertices moved along the field's gradient to where triangles serve best.
+
+    The signed distances of the triangles around each vertex come to a mean of about 0.
+    """
+    distances, areas = _distances(network, surface)
+    sides = distances[:, :3]
+    felt = (sides + np.roll(sides, 1, axis=1)) / 2 + distances[:, 3:] / 3
+    corners, count = surface.faces.ravel(), len(surface.positions)
+    sums = np.bincount(corners, (areas[:, None] * felt).ravel(), minlength=count)
+    weights = np.bincount(corners, np.repeat(areas, 3), minlength=count) * (4 / 3)
+    slopes = gradient(network, surface.positions)[1].astype(np.float64)
+    normals = slopes / np.maximum(np.linalg.norm(slopes, axis=1, keepdims=True), 1e-6)
+    moves = config.step * sums / np.maximum(weights, np.finfo(np.float64).tiny)
+    moved = surface.positions - moves[:, None] * normals
+    return Surface(moved.astype(np.float32), surface.faces, surface.cell)
+
+
+def deviation(network: Network, surface: Surface, faces: int | None = None) -> float:
     """Mean distance of the triangles to the zero set, area-weighted, normalized frame.
 
-    The field's value at centroids and at the middles of edges stands for the distance.
+    The field's value at centroids and at the middles of edges stands for the distance. It is
+    measured on about `faces` triangles, or on all.
     """
+    every = max(1, len(surface.faces) // faces) if faces else 1
+    part = Surface(surface.positions, surface.faces[::every], surface.cell)
+    distances, areas = _distances(network, part)
+    return float(np.average(np.abs(distances).mean(axis=1), weights=areas)) if areas.any() else 0.0
+
+
+def _distances(network: Network, surface: Surface) -> tuple[Float64Array, Float64Array]:
+    """The field (m, 4) at the middle of each side and the centroid of each face; areas (m,)."""
     corners = surface.positions[surface.faces]
     middles = (corners + np.roll(corners, -1, axis=1)) / 2
     points = np.concatenate([middles, corners.mean(axis=1, keepdims=True)], axis=1)
-    distances = np.abs(evaluate(network, points.reshape(-1, 3))).reshape(-1, 4).mean(axis=1)
-    a, b, c = corners.transpose(1, 0, 2)
-    areas = np.linalg.norm(np.cross(b - a, c - a), axis=1)
-    return float(np.average(distances, weights=areas)) if areas.any() else 0.0
+    distances = evaluate(network, points.reshape(-1, 3)).reshape(-1, 4).astype(np.float64)
+    a, b, c = corners.astype(np.float64).transpose(1, 0, 2)
+    return distances, np.linalg.norm(np.cross(b - a, c - a), axis=1) / 2

@@ -1,21 +1,24 @@
-"""The resolution that an asset gets when nobody asks for one."""
+"""The resolution and the number of faces that an asset gets when nobody asks for any."""
 
 from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 
 import nispcodec
 from nispcodec.core.network import Network
-from nispcodec.extract.config import ResolutionConfig, SimplifyConfig
+from nispcodec.extract.config import ExtractConfig, ResolutionConfig, SimplifyConfig
 from nispcodec.extract.isosurface import Surface, near_surface
-from nispcodec.extract.meshing import default_resolution
+from nispcodec.extract.meshing import default_resolution, negligible_error, textured_mesh
+from nispcodec.extract.simplify import deviation
 from nispcodec.extract.thin_walls import thin_share
 from nispcodec.model import NispModel
 from tests import tiny
+from tests.extract.surfaces import areas, assert_closed
 from tests.tiny import field_of, varied
 
 
@@ -53,7 +56,36 @@ def test_islands_in_a_membrane_go_with_it() -> None:
     right = [model.document.frame.to_normalized(mesh.positions)[:, 0] for mesh in (whole, half)]
     assert right[0].max() > 0.79
     assert right[1].max() < 0.02
-    assert len(half.faces) > 0.4 * len(whole.faces)
+    total, left = (areas(each.positions, each.faces).sum() for each in (whole, half))
+    assert 0.45 < left / total < 0.55
+
+
+def test_by_default_there_are_as_few_faces_as_the_files_own_error_lets() -> None:
+    document, sdf = tiny.document(tiny.sphere()), tiny.sphere()
+    config = ExtractConfig(ResolutionConfig(least=96, most=96))
+    fine, rough = (
+        textured_mesh(replace(document, info={"distance_error": error}), config=config)[0]
+        for error in (5.5e-4, 6.5e-4)
+    )
+    every = NispModel(document).to_mesh(96)
+    assert len(rough.faces) < len(fine.faces) < 0.5 * len(every.faces)
+    assert_closed(rough.faces)
+    positions = document.frame.to_normalized(rough.positions).astype(np.float32)
+    surface = Surface(positions, rough.faces, 0.1)
+    assert deviation(sdf, surface) <= 1.05 * negligible_error({"distance_error": 6.5e-4})
+
+
+@pytest.mark.parametrize("told", [0, -1.0, float("nan"), "small", True, None])
+def test_errors_that_make_no_sense_are_not_believed(told: Any) -> None:
+    usual = SimplifyConfig.usual
+    assert negligible_error({} if told is None else {"distance_error": told}) == usual
+
+
+def test_errors_are_believed_within_limits() -> None:
+    assert negligible_error({"distance_error": 1e-9}) == SimplifyConfig.finest
+    assert negligible_error({"distance_error": 5}) == SimplifyConfig.coarsest
+    assert negligible_error({"distance_error": float("inf")}) == SimplifyConfig.coarsest
+    assert negligible_error({"distance_error": 4e-4}) == pytest.approx(1.2e-4)
 
 
 def test_default_resolution_follows_the_walls() -> None:
@@ -76,7 +108,7 @@ def test_no_surface_at_all_has_a_default_too() -> None:
 def test_a_simplifier_that_is_stuck_is_not_asked_again(monkeypatch: pytest.MonkeyPatch) -> None:
     asked = []
 
-    def stuck(surface: Surface, faces: int, config: SimplifyConfig) -> Surface:
+    def stuck(_: Network, surface: Surface, faces: int, config: SimplifyConfig) -> Surface:
         asked.append(faces)
         return surface
 

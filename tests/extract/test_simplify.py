@@ -7,7 +7,7 @@ import pytest
 
 from nispcodec.core.network import Network
 from nispcodec.extract.isosurface import Surface, extract
-from nispcodec.extract.simplify import deviation, simplest, simplified, without_fins
+from nispcodec.extract.simplify import deviation, fitted, simplest, simplified, without_fins
 from tests import tiny
 from tests.extract.surfaces import assert_closed
 
@@ -23,8 +23,8 @@ def surface(ball: Network) -> Surface:
 
 
 @pytest.mark.parametrize("faces", [2000, 500, 100])
-def test_count_and_closedness(surface: Surface, faces: int) -> None:
-    fewer = simplified(surface, faces)
+def test_count_and_closedness(ball: Network, surface: Surface, faces: int) -> None:
+    fewer = simplified(ball, surface, faces)
     assert 0.9 * faces <= len(fewer.faces) <= faces
     assert_closed(fewer.faces)
     assert len(np.unique(fewer.faces)) == len(fewer.positions)
@@ -32,14 +32,25 @@ def test_count_and_closedness(surface: Surface, faces: int) -> None:
     np.testing.assert_allclose(radii, 0.6, atol=10 / faces)
 
 
-def test_enough_is_enough(surface: Surface) -> None:
-    assert simplified(surface, len(surface.faces)) is surface
+def test_enough_is_enough(ball: Network, surface: Surface) -> None:
+    assert simplified(ball, surface, len(surface.faces)) is surface
+
+
+def test_fitting_brings_triangles_nearer_and_keeps_them(ball: Network, surface: Surface) -> None:
+    # Vertices on a sphere: all triangles lie inside of it.
+    coarse = extract(ball, 12)
+    nearer = fitted(ball, coarse)
+    assert np.array_equal(nearer.faces, coarse.faces)
+    assert deviation(ball, nearer) < 0.5 * deviation(ball, coarse)
+    moves = np.linalg.norm(nearer.positions - coarse.positions, axis=1)
+    assert 0 < moves.max() < 0.1 * coarse.cell
 
 
 def test_deviation_is_the_mean_distance(ball: Network, surface: Surface) -> None:
     swollen = Surface(surface.positions * np.float32(0.65 / 0.6), surface.faces, surface.cell)
     assert deviation(ball, surface) < 1e-3
     assert deviation(ball, swollen) == pytest.approx(0.05, abs=2e-3)
+    assert deviation(ball, swollen, 500) == pytest.approx(0.05, abs=2e-3)
 
 
 def test_simplest_keeps_to_the_error(ball: Network, surface: Surface) -> None:
@@ -47,6 +58,10 @@ def test_simplest_keeps_to_the_error(ball: Network, surface: Surface) -> None:
     assert len(rough.faces) < len(fine.faces) < len(surface.faces)
     assert deviation(ball, rough) <= 1e-2
     assert deviation(ball, fine) <= 2e-3
+
+
+def test_an_error_that_nothing_keeps_leaves_every_triangle(ball: Network, surface: Surface) -> None:
+    assert simplest(ball, surface, 1e-9) is surface
 
 
 def test_fins_go_and_everything_else_stays() -> None:
