@@ -7,6 +7,7 @@ seen.json. NISP is the environment of nispcodec.
 from __future__ import annotations
 
 import json
+import os
 import sys
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -112,3 +113,5 @@ def error_of(mistake: Callable[[], object]) -> str:
 
 if __name__ == "__main__":
     main(Path(sys.argv[1]), sys.argv[2])
+    # bpy 4.2 crashes when Python ends after any operator of a script has run.
+    os._exit(0)
