@@ -239,6 +239,9 @@ TESTED_ELSEWHERE = {
     "format/mesh/positions.py": "format/mesh/test_section.py",
     "format/mesh/texture.py": "format/mesh/test_section.py",
     "format/mesh/part.py": "format/mesh/test_section.py",
+    # What is computed once for what is tested beside it.
+    "bake/tangents.py": "bake/test_rebake.py",
+    "simplify/source.py": "simplify/test_shading.py",
     # Tables.
     "format/mesh/priors.py": "format/mesh/test_spec_decoder.py",
     "core/slots.py": "format/test_spec.py",

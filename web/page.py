@@ -70,16 +70,16 @@ def original_data(mesh: TexturedMesh, frame: Frame) -> dict[str, Any]:
     """A mesh as viewer/original.js reads it: in the normalized frame, arrays in base64."""
     import numpy as np
 
-    from nispcodec.io.write.vertices import split_vertices, vertex_normals
+    from nispcodec.io.write.vertices import shading_normals, split_vertices
 
-    normals, start = vertex_normals(mesh), 0
+    normals, start = shading_normals(mesh), 0
     parts: list[tuple[Any, ...]] = []
     groups: list[dict[str, Any]] = []
     keys = 2 * mesh.face_materials + mesh.has_uv
     for key in np.unique(keys).tolist():
-        part = split_vertices(mesh, np.flatnonzero(keys == key))
+        part = split_vertices(mesh, np.flatnonzero(keys == key), normals)
         faces = part.faces.ravel() + sum(len(each[0]) for each in parts)
-        parts.append((frame.to_normalized(part.positions), normals[part.sources], part.uvs, faces))
+        parts.append((frame.to_normalized(part.positions), part.normals, part.uvs, faces))
         group = {"start": start, "count": faces.size, "material": key // 2}
         groups.append({**group, "textured": bool(key % 2)})
         start += faces.size

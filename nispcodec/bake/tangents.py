@@ -8,7 +8,7 @@ import numpy as np
 
 from nispcodec.core.arrays import Float64Array, Int32Array
 from nispcodec.core.asset import TexturedMesh
-from nispcodec.io.write.vertices import vertex_normals
+from nispcodec.io.write.vertices import shading_normals
 
 
 @dataclass(frozen=True)
@@ -31,7 +31,8 @@ def frames_at(mesh: TexturedMesh, faces: Int32Array, weights: Float64Array) -> T
     along, mirrored = _directions(mesh)
     sums = np.zeros((len(mesh.uvs), 3))
     np.add.at(sums, mesh.uv_faces.ravel(), np.repeat(along, 3, axis=0))
-    normals = vertex_normals(mesh).astype(np.float64)[mesh.faces[faces]]
+    shading = shading_normals(mesh)
+    normals = shading.rows.astype(np.float64)[shading.faces[faces]]
     normal = _unit(np.einsum("nc,ncd->nd", weights, normals))
     tangent = np.einsum("nc,ncd->nd", weights, sums[mesh.uv_faces[faces]])
     tangent = _unit(tangent - (tangent * normal).sum(axis=1, keepdims=True) * normal)

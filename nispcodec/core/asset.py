@@ -79,6 +79,8 @@ class TexturedMesh:
     uv_faces       (m, 3) int32, into uvs; a face without UV has -1 in all three corners
     face_materials (m,)   int32, into materials
     warnings       what the reader had to leave out or guess, one sentence each
+    creases        (m, 3) bool: whether shading breaks over the side from corner i to corner i + 1,
+                   which is alike for all sides between two positions; None: nobody said
 
     Raises MeshError for an array of another shape or type, a number that is not finite, an index
     out of range, a material's name with control characters, and a map, wrap, filter or alpha mode
@@ -94,6 +96,7 @@ class TexturedMesh:
     textures: tuple[Texture, ...] = ()
     name: str = "mesh"
     warnings: tuple[str, ...] = ()
+    creases: BoolArray | None = None
 
     def __post_init__(self) -> None:
         faces = len(self.faces)
@@ -102,6 +105,8 @@ class TexturedMesh:
         _expect("uvs", self.uvs, (None, 2), np.float64)
         _expect("uv_faces", self.uv_faces, (faces, 3), np.int32)
         _expect("face_materials", self.face_materials, (faces,), np.int32)
+        if self.creases is not None:
+            _expect("creases", self.creases, (faces, 3), np.bool_)
         _expect_range("faces", self.faces, 0, len(self.positions))
         _expect_range("uv_faces", self.uv_faces, -1, len(self.uvs))
         _expect_range("face_materials", self.face_materials, 0, len(self.materials))

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from functools import cached_property
 from math import isfinite
 
 import numpy as np
 
 from nispcodec.core.arrays import AnyArray, BoolArray, Float64Array, Int32Array
+from nispcodec.core.creases import sharp_sides
 from nispcodec.core.errors import FormatError
 
 PART = "mesh part"
@@ -64,7 +66,8 @@ class MeshPart:
     face_charts (m,) int32: the chart of each face, into the two below
     chart_materials (k,) int32: the material of each chart
     chart_has_uv    (k,) bool
-    creases     (m, 3) bool: whether shading breaks over the edge from corner i to corner i + 1
+    creases     (m, 3) bool: whether shading breaks over the edge from corner i to corner i + 1;
+                where no edge is one, nobody said, see `shading_breaks`
     sheet       (m,) bool: faces of open sheets, which have no inside
     placements  at least one
 
@@ -121,6 +124,14 @@ class MeshPart:
     def placed_charts(self) -> int:
         """How many charts all copies have together."""
         return len(self.chart_materials) * len(self.placements)
+
+    @cached_property
+    def shading_breaks(self) -> BoolArray:
+        """(m, 3): the creases; where there are none, the edges that turn by over 45 degrees."""
+        if self.creases.any():
+            return self.creases
+        places = self.faces.astype(np.int64)
+        return sharp_sides(places, self.positions[places].astype(np.float64))
 
     def normalized(self) -> Float64Array:
         """(n, 3) float64: the positions in the normalized frame, before any placement."""

@@ -6,8 +6,9 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from nispcodec.core.arrays import Int32Array
+from nispcodec.core.arrays import BoolArray, Int32Array
 from nispcodec.core.asset import TexturedMesh
+from nispcodec.core.creases import turned_sides
 from nispcodec.core.document import Document
 from nispcodec.core.mesh_part import MeshPart, Placement
 from nispcodec.core.placing import placed_points
@@ -34,6 +35,7 @@ def joined(document: Document, field: TexturedMesh | None) -> TexturedMesh:
         materials=document.materials,
         textures=document.textures,
         name=str(document.info.get("name", "mesh")),
+        creases=_creases(pieces) if document.meshes else None,
     )
 
 
@@ -65,6 +67,17 @@ def _copy(document: Document, part: MeshPart, placement: Placement) -> TexturedM
         face_materials=materials[part.face_charts].astype(np.int32),
         materials=document.materials,
         textures=document.textures,
+        creases=turned_sides(part.shading_breaks) if turned else part.shading_breaks,
+    )
+
+
+def _creases(pieces: Sequence[TexturedMesh]) -> BoolArray:
+    """Those of mesh parts; a field has none."""
+    return np.concatenate(
+        [
+            np.zeros(each.faces.shape, np.bool_) if each.creases is None else each.creases
+            for each in pieces
+        ]
     )
 
 

@@ -44,11 +44,19 @@ def shown(analysis: Analysis) -> Shown:
         mesh,
         faces=np.where(turned[:, None], mesh.faces[:, ::-1], mesh.faces),
         uv_faces=np.where(turned[:, None], mesh.uv_faces[:, ::-1], mesh.uv_faces),
+        creases=_turned(mesh.creases, turned),
     )
     faces = _any(solid.parents, count)
     hidden = np.flatnonzero(~faces)
     faces[hidden] = _seen(analysis.frame.to_normalized(mesh.corners), hidden, config)
     return Shown(flipped, faces, _by_body(flipped, faces, sheet & ~walls))
+
+
+def _turned(creases: BoolArray | None, turned: BoolArray) -> BoolArray | None:
+    """Of faces whose corners are in the reverse order: the side that was first is second."""
+    if creases is None:
+        return None
+    return np.where(turned[:, None], creases[:, [1, 0, 2]], creases)
 
 
 def _seen(corners: Float64Array, faces: Int64Array, config: SolidConfig) -> BoolArray:

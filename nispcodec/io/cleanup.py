@@ -75,6 +75,7 @@ def _drop_faces(mesh: TexturedMesh, dropped: BoolArray, kind: str) -> TexturedMe
         faces=mesh.faces[~dropped],
         uv_faces=mesh.uv_faces[~dropped],
         face_materials=mesh.face_materials[~dropped],
+        creases=None if mesh.creases is None else mesh.creases[~dropped],
         warnings=(*mesh.warnings, f"dropped {_count(int(dropped.sum()), f'{kind} face')}"),
     )
 

@@ -53,6 +53,7 @@ def _spread_over_uv(surface: Surface) -> SurfacePoints:
         faces=mesh.uv_faces[chosen],
         uv_faces=mesh.uv_faces[chosen],
         face_materials=mesh.face_materials[chosen],
+        creases=None,
     )
     layout = Surface(laid_out, flat)
     if not layout.areas.any():  # a palette: every chart is a point

@@ -5,6 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from nispcodec.core.arrays import Float64Array
+from nispcodec.core.connectivity import row_ids
+from nispcodec.core.creases import fan_normals
 from nispcodec.metrics.surface import Surface
 
 # Faces that lean further than this (degrees) away from each other meet in a hard edge.
@@ -15,8 +17,13 @@ def corner_normals(surface: Surface) -> Float64Array:
     """(m, 3, 3): a normal, not of unit length, for each corner of each face, normalized frame.
 
     The sum, weighted by area, of the normals of those faces at the corner's position that lean
-    away from the corner's own face by less than CREASE. Positions that coincide are one.
+    away from the corner's own face by less than CREASE. Positions that coincide are one. Where a
+    mesh has creases, normals break over these instead.
     """
+    if surface.mesh.creases is not None:
+        places = row_ids(surface.positions)[surface.mesh.faces]
+        rows, fans = fan_normals(places, surface.corners, surface.mesh.creases)
+        return rows[fans]
     _, welded = np.unique(surface.positions, axis=0, return_inverse=True)
     vertices = welded.reshape(-1)[surface.mesh.faces].ravel()
     order = np.argsort(vertices, kind="stable")

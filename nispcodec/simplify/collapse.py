@@ -75,6 +75,8 @@ def _rebuilt(triangles: Triangles, corners: Int64Array) -> Triangles:
         materials=triangles.materials[face],
         patches=triangles.patches[face],
         sheet=triangles.sheet[face],
+        # Found anew, when vertices are where they stay.
+        creases=None if triangles.creases is None else np.zeros(corners.shape, np.bool_),
     ).compact()
 
 

@@ -96,6 +96,27 @@ class CopiesConfig:
 
 
 @dataclass(frozen=True)
+class CreaseConfig:
+    """Which edges of simplified triangles are creases.
+
+    along       shares of an edge's length at which the source's normals beside it are looked up
+    inset       how far from the edge that is, as part of the way to the face's third corner: more
+                than positions are off, and little enough for smooth normals to differ little there
+    jump        part of the turn of an edge's faces by which the normals must differ
+    flat        radians: edges that turn by less look alike either way
+    free        part of their shading's error by which sharp edges are judged: they take no bytes
+    negligible  share of the bent edges that may be other than by the rule for parts that say none
+    """
+
+    along: tuple[float, ...] = (0.25, 0.5, 0.75)
+    inset: float = 0.12
+    jump: float = 0.5
+    flat: float = 0.035
+    free: float = 0.95
+    negligible: float = 0.005
+
+
+@dataclass(frozen=True)
 class LadderConfig:
     """Which candidates are made.
 
@@ -105,7 +126,6 @@ class LadderConfig:
     uv_step       of the grid of UVs, for a UV error of 1
     tolerance     mean distance below which rounding need not go, normalized frame
     uv_tolerance  the same of UVs
-    crease_angle  radians: shading breaks over edges that turn by more; None: over none
     """
 
     samples: int = 20000
@@ -114,7 +134,6 @@ class LadderConfig:
     uv_step: float = 1.8
     tolerance: float = 5e-5
     uv_tolerance: float = 1e-4
-    crease_angle: float | None = None
     collapse: CollapseConfig = CollapseConfig()
     fit: FitConfig = FitConfig()
     copies: CopiesConfig = CopiesConfig()

@@ -9,6 +9,7 @@ import numpy as np
 
 from nispcodec.core.arrays import BoolArray, Float64Array, Int32Array, Int64Array
 from nispcodec.core.asset import TexturedMesh
+from nispcodec.core.creases import turned_sides
 from nispcodec.core.mesh_part import MeshPart, Placement
 from nispcodec.core.placing import placed_points
 from nispcodec.simplify.quantize import Grid, on_grids
@@ -39,11 +40,9 @@ class Group:
         positions = (triangles.positions - np.asarray(self.shift)) / self.weight
         return replace(triangles, positions=positions, uvs=triangles.uvs / self.weight)
 
-    def part(
-        self, home: Triangles, grid: Grid, uv_grid: Grid, crease_angle: float | None
-    ) -> MeshPart:
+    def part(self, home: Triangles, grid: Grid, uv_grid: Grid) -> MeshPart:
         """The part made of the bodies, given in the normalized frame, with all placements."""
-        part = on_grids(home, grid, uv_grid, crease_angle)
+        part = on_grids(home, grid, uv_grid)
         placements = []
         for placement, by_patch in zip(self.placements, self.materials, strict=True):
             if by_patch is not None:
@@ -64,6 +63,7 @@ class Group:
                 faces=home.faces[:, order],
                 uvs=home.uvs * placement.uv_scale + placement.uv_offset,
                 uv_faces=home.uv_faces[:, order],
+                creases=_turned(home.creases) if placement.mirrored else home.creases,
             )
 
     def _painted(self, home: Triangles, by_patch: Int32Array) -> Triangles:
@@ -109,9 +109,7 @@ class Copies:
             placed.append(replace(group, weight=float(weight), shift=(x, y, z)))
         return Copies(_enlarged(held, placed), tuple(placed), covered, fewest_left)
 
-    def parts(
-        self, triangles: Triangles, bits: int, uv_bits: int, crease_angle: float | None = None
-    ) -> tuple[MeshPart, ...]:
+    def parts(self, triangles: Triangles, bits: int, uv_bits: int) -> tuple[MeshPart, ...]:
         """The simplified triangles as parts, rounded as `quantized` rounds.
 
         All have one grid. A group of which no face is left has no part; copies of one of which few
@@ -119,7 +117,7 @@ class Copies:
         """
         grid, uv_grid = Grid.of(triangles.positions, bits), Grid.of(triangles.uvs, uv_bits)
         return tuple(
-            group.part(home, grid.around(home.positions), uv_grid.around(home.uvs), crease_angle)
+            group.part(home, grid.around(home.positions), uv_grid.around(home.uvs))
             for group, home in self._held(triangles)
         )
 
@@ -149,6 +147,10 @@ class Copies:
         if plain:
             yield Group(range(0)), plain[0] if len(plain) == 1 else joined(*plain)
         yield from held
+
+
+def _turned(creases: BoolArray | None) -> BoolArray | None:
+    return None if creases is None else turned_sides(creases)
 
 
 def _pieces(triangles: Triangles, groups: Sequence[Group]) -> Iterator[tuple[Group, Triangles]]:

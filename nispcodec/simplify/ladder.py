@@ -18,6 +18,7 @@ from nispcodec.simplify.copy_search import copies_of
 from nispcodec.simplify.errors import Errors, Original, mesh_of
 from nispcodec.simplify.position_fit import fitted_positions
 from nispcodec.simplify.scene import scene
+from nispcodec.simplify.shading import shaded
 from nispcodec.simplify.source import Source
 from nispcodec.simplify.triangles import Triangles
 from nispcodec.simplify.uv_fit import fitted_uvs
@@ -114,7 +115,8 @@ class Simplifier:
             triangles = self.source.triangles
             if faces < len(triangles):
                 fewer = collapsed(triangles, faces, self.config.collapse)
-                triangles = fitted_positions(self.source, fewer, self.config.fit, self.seed)
+                placed = fitted_positions(self.source, fewer, self.config.fit, self.seed)
+                triangles = shaded(self.source, placed)
             self._fitted[faces] = triangles
         return self._fitted[faces]
 
@@ -126,7 +128,7 @@ class Simplifier:
             placed = self.copies.rounded(triangles, bits)
             uvs = fitted_uvs(self.source, placed, self.config.fit, self.seed).uvs
             triangles = replace(triangles, uvs=uvs)
-        parts = self.copies.parts(triangles, bits, uv_bits, self.config.crease_angle)
+        parts = self.copies.parts(triangles, bits, uv_bits)
         errors = self.original.errors(scene([(mesh_of(part), part.placements) for part in parts]))
         return Candidate(parts, bits, uv_bits, errors, self.coded)
 

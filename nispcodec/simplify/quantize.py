@@ -6,11 +6,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from nispcodec.core.arrays import BoolArray, Float64Array, Int32Array, Int64Array
+from nispcodec.core.arrays import Float64Array, Int32Array, Int64Array
 from nispcodec.core.connectivity import connected_components
 from nispcodec.core.mesh_part import MAX_GRID_BITS, MeshPart
-from nispcodec.simplify.closest import unit
 from nispcodec.simplify.curves import own_corners
+from nispcodec.simplify.shading import written_creases
 from nispcodec.simplify.triangles import Triangles, side_numbers
 
 
@@ -60,22 +60,17 @@ class Grid:
         return self.integers(numbers) * self.step + self.origin
 
 
-def quantized(
-    triangles: Triangles, bits: int, uv_bits: int, crease_angle: float | None = None
-) -> MeshPart:
+def quantized(triangles: Triangles, bits: int, uv_bits: int) -> MeshPart:
     """The part of these triangles with so many bits a coordinate.
 
     Edges whose ends fall together are collapsed, so that no hole opens; the two faces at each go.
-    crease_angle: radians; shading breaks over edges whose faces' normals differ by more. None: over
-    none. Raises ValueError for bits below 1 or above MAX_GRID_BITS.
+    Raises ValueError for bits below 1 or above MAX_GRID_BITS.
     """
     grid, uv_grid = Grid.of(triangles.positions, bits), Grid.of(triangles.uvs, uv_bits)
-    return on_grids(triangles, grid, uv_grid, crease_angle)
+    return on_grids(triangles, grid, uv_grid)
 
 
-def on_grids(
-    triangles: Triangles, grid: Grid, uv_grid: Grid, crease_angle: float | None = None
-) -> MeshPart:
+def on_grids(triangles: Triangles, grid: Grid, uv_grid: Grid) -> MeshPart:
     """The same on grids that are given."""
     welded = _collapsed(triangles, grid.integers(triangles.positions))
     charts, firsts = charts_of(welded)
@@ -87,7 +82,7 @@ def on_grids(
         face_charts=charts,
         chart_materials=welded.materials[firsts],
         chart_has_uv=welded.has_uv[firsts],
-        creases=creases_of(welded, crease_angle),
+        creases=written_creases(welded),
         sheet=welded.sheet,
         step=grid.step,
         origin=(float(grid.origin[0]), float(grid.origin[1]), float(grid.origin[2])),
@@ -106,21 +101,6 @@ def charts_of(triangles: Triangles) -> tuple[Int32Array, Int64Array]:
     _, labels = connected_components(every, sides.ravel() + faces, faces + int(sides.max()) + 1)
     _, firsts, charts = np.unique(labels[:faces], return_index=True, return_inverse=True)
     return charts.astype(np.int32), firsts
-
-
-def creases_of(triangles: Triangles, angle: float | None) -> BoolArray:
-    """(m, 3) bool: the sides at which two faces' normals differ by more than `angle` (radians)."""
-    if angle is None:
-        return np.zeros((len(triangles), 3), np.bool_)
-    a, b, c = np.moveaxis(triangles.corners, 1, 0)
-    normals = unit(np.cross(b - a, c - a))
-    edges = side_numbers(triangles.faces).ravel()
-    sums = np.zeros((int(edges.max()) + 1, 3))
-    np.add.at(sums, edges, np.repeat(normals, 3, axis=0))
-    counts = np.bincount(edges)
-    # Two unit vectors at an angle have a sum of length 2 cos(angle / 2).
-    sharp = (counts == 2) & (np.linalg.norm(sums, axis=1) < 2 * np.cos(angle / 2))
-    return np.asarray(sharp[edges].reshape(-1, 3))
 
 
 def _collapsed(triangles: Triangles, integers: Int32Array) -> Triangles:
@@ -146,6 +126,7 @@ def _collapsed(triangles: Triangles, integers: Int32Array) -> Triangles:
         triangles.materials[kept],
         triangles.patches[kept],
         triangles.sheet[kept],
+        None if triangles.creases is None else triangles.creases[kept],
     ).compact()
 
 

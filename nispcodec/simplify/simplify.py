@@ -5,6 +5,7 @@ from __future__ import annotations
 from nispcodec.simplify.collapse import collapsed
 from nispcodec.simplify.config import CollapseConfig, FitConfig
 from nispcodec.simplify.position_fit import fitted_positions
+from nispcodec.simplify.shading import shaded
 from nispcodec.simplify.source import Source
 from nispcodec.simplify.triangles import Triangles
 from nispcodec.simplify.uv_fit import fitted_uvs
@@ -24,4 +25,5 @@ def simplified(
     if faces >= len(source.triangles):
         return source.triangles
     fewer = collapsed(source.triangles, faces, collapse)
-    return fitted_uvs(source, fitted_positions(source, fewer, fit, seed), fit, seed)
+    placed = fitted_positions(source, fewer, fit, seed)
+    return fitted_uvs(source, shaded(source, placed), fit, seed)

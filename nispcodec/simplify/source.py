@@ -8,6 +8,7 @@ from functools import cached_property
 import numpy as np
 
 from nispcodec.core.arrays import BoolArray, Float64Array
+from nispcodec.core.creases import fan_normals
 from nispcodec.simplify.closest import Tree
 from nispcodec.simplify.curves import Segments, border_sides, ends_of, seam_sides
 from nispcodec.simplify.triangles import Triangles
@@ -23,6 +24,14 @@ class Source:
     def tree(self) -> Tree:
         """For closest points."""
         return Tree(self.triangles.corners)
+
+    @cached_property
+    def corner_normals(self) -> Float64Array:
+        """(m, 3, 3): the normals that corners are shaded with; creases must be known."""
+        triangles, creases = self.triangles, self.triangles.creases
+        assert creases is not None
+        normals, fans = fan_normals(triangles.faces, triangles.corners, creases)
+        return normals[fans]
 
     @cached_property
     def borders(self) -> Segments:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -26,6 +27,8 @@ class Triangles:
     materials  (m,) int32
     patches    (m,) int32: faces that corners of one material connect share a number
     sheet      (m,) bool: faces of open sheets
+    creases    (m, 3) bool: whether shading breaks over the side from corner i to i + 1; None:
+               nobody said
     """
 
     positions: Float64Array
@@ -35,6 +38,7 @@ class Triangles:
     materials: Int32Array
     patches: Int32Array
     sheet: BoolArray
+    creases: BoolArray | None = None
 
     @staticmethod
     def of(
@@ -67,6 +71,7 @@ class Triangles:
             materials=mesh.face_materials[kept],
             patches=welding.patches[kept],
             sheet=np.zeros(int(kept.sum()), np.bool_) if sheet is None else sheet[kept],
+            creases=None if mesh.creases is None else mesh.creases[kept],
         ).compact()
         return triangles if sheet is not None else replace(triangles, sheet=_open(triangles))
 
@@ -82,6 +87,7 @@ class Triangles:
             materials=self.materials[chosen],
             patches=self.patches[chosen],
             sheet=self.sheet[chosen],
+            creases=None if self.creases is None else self.creases[chosen],
         ).compact()
 
     def compact(self) -> Triangles:
@@ -148,7 +154,13 @@ def joined(*pieces: Triangles) -> Triangles:
         materials=np.concatenate([piece.materials for piece in pieces]),
         patches=np.concatenate([piece.patches for piece in pieces]),
         sheet=np.concatenate([piece.sheet for piece in pieces]),
+        creases=_all_creases(pieces),
     )
+
+
+def _all_creases(pieces: Sequence[Triangles]) -> BoolArray | None:
+    known = [piece.creases for piece in pieces if piece.creases is not None]
+    return np.concatenate(known) if len(known) == len(pieces) else None
 
 
 def distinct_corners(mesh: TexturedMesh) -> BoolArray:

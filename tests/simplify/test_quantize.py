@@ -8,9 +8,8 @@ import numpy as np
 import pytest
 
 from nispcodec.core.connectivity import connected_faces
-from nispcodec.simplify.collapse import collapsed
 from nispcodec.simplify.errors import mesh_of
-from nispcodec.simplify.quantize import Grid, charts_of, creases_of, quantized
+from nispcodec.simplify.quantize import Grid, charts_of, quantized
 from nispcodec.simplify.triangles import Triangles, side_numbers
 from tests.geometry import shapes
 from tests.simplify.meshes import UNIT, ball, bare_ball, half_dressed_ball, sheet, triangles_of
@@ -67,13 +66,6 @@ def test_charts_that_touch_in_a_point_are_two() -> None:
     touching = triangles_of(shapes.soup(corners.astype(float)))
     assert connected_faces(touching.faces).max() == 0
     assert charts_of(touching)[0].tolist() == [0, 1]
-
-
-def test_creases_are_sharp_edges() -> None:
-    box = Triangles.of(shapes.box_asset(), UNIT)
-    assert not creases_of(box, None).any()
-    assert creases_of(box, 1.0).sum() == 24
-    assert not creases_of(collapsed(ball(), 300), 1.5).any()
 
 
 @pytest.mark.parametrize("bits", [0, 21])

@@ -190,7 +190,9 @@ def test_normals_are_smooth_between_creases_whatever_the_triangles(tmp_path: Pat
     (tmp_path / "model.nisp").write_bytes(pack(mesh_document(broken)))
     found = json.loads(run_node(HERE / "meshes.mjs", "--extract", tmp_path / "model.nisp"))[0]
     positions = np.reshape(found["positions"], (-1, 3))
-    outwards = np.sign(positions - positions.mean(axis=0))
+    wide, high, deep = np.ptp(positions, axis=0)
+    areas = np.array([high * deep, wide * deep, wide * high])
+    outwards = areas * np.sign(positions - (positions.min(axis=0) + positions.max(axis=0)) / 2)
     for normal, sides in zip(np.reshape(found["normals"], (-1, 3)), outwards, strict=True):
         ways = [sides] if sides[0] > 0 else [sides * (1, 0, 0), sides * (0, 1, 1)]
         assert min(np.abs(normal - way / np.linalg.norm(way)).max() for way in ways) < 1e-6

@@ -100,14 +100,13 @@ function faceNormal(faces, positions, corner) {
   return cross(u, v);
 }
 
-/** Normals of groups of corners, weighted by angle, of unit length; 0 where they cancel. @param {MeshPart} part @param {Int32Array} groups */
+/** Normals of groups of corners, weighted by area times angle, of unit length; 0 where they cancel. @param {MeshPart} part @param {Int32Array} groups */
 function normalSums({ faces, positions }, groups) {
   const sums = new Float64Array(3 * faces.length);
   for (let corner = 0; corner < faces.length; corner += 3) {
     const normal = faceNormal(faces, positions, corner);
-    const length = Math.hypot(...normal) || 1;
     for (let i = 0; i < 3; i++) {
-      const share = angleAt(faces, positions, corner + i) / length;
+      const share = angleAt(faces, positions, corner + i);
       normal.forEach((value, axis) => (sums[3 * groups[corner + i] + axis] += share * value));
     }
   }

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from nispcodec.core.arrays import Float64Array, Int64Array
+from nispcodec.core.arrays import Float32Array, Float64Array, Int64Array
 from nispcodec.core.asset import TexturedMesh
 from nispcodec.core.errors import MeshError
 from nispcodec.io.folder import Folder
@@ -19,6 +19,7 @@ from nispcodec.io.read.gltf_json import LARGEST, Element, parse_json
 from nispcodec.io.read.gltf_materials import GltfMaterials, UvSource
 from nispcodec.io.read.gltf_meshopt import EXTENSIONS as MESHOPT
 from nispcodec.io.read.gltf_nodes import Shown, shown_meshes, skinned
+from nispcodec.io.read.normals import with_creases
 
 _READABLE = {
     "KHR_texture_transform",
@@ -106,6 +107,7 @@ class _Scene:
         self._faces: list[Int64Array] = []
         self._uv_faces: list[Int64Array] = []
         self._face_materials: list[Int64Array] = []
+        self._normals: list[Float32Array] = []
         self._count = 0
 
     def add(self, primitive: Element, shown: Shown, number: int) -> None:
@@ -128,6 +130,7 @@ class _Scene:
         self._faces.append(faces + np.repeat(starts, len(once))[:, None])
         self._uv_faces.append(np.full_like(faces, -1) if uv_first is None else faces + uv_first)
         self._face_materials.append(np.full(len(faces), material))
+        self._normals.append(self._vertex_normals(attributes, count)[faces])
         self._count += len(faces)
         self._warn_of_losses(primitive, attributes)
 
@@ -137,7 +140,7 @@ class _Scene:
             root.fail("a visible mesh of triangles in the scene", "; ".join(self._warnings))
         uv_faces = np.concatenate(self._uv_faces)
         uvs, uv_faces = without_unusable(self._uvs.table(2), uv_faces, root.file, self._warnings)
-        return TexturedMesh(
+        mesh = TexturedMesh(
             positions=self._positions.table(3),
             faces=np.concatenate(self._faces).astype(np.int32),
             uvs=uvs,
@@ -147,6 +150,20 @@ class _Scene:
             textures=tuple(self._materials.shelf.textures),
             warnings=tuple(self._warnings),
         )
+        return with_creases(mesh, np.concatenate(self._normals))
+
+    def _vertex_normals(self, attributes: Element, count: int) -> Float32Array:
+        """(count, 3); NaN for a primitive without: its faces are flat (glTF 2.0, 3.7.2.1).
+
+        In the node's own frame: they are compared with each other.
+        """
+        accessor = attributes.optional("NORMAL")
+        if accessor is None:
+            return np.full((count, 3), np.nan, np.float32)
+        normals = self._buffers.numbers(accessor, 3, finite=False)
+        if len(normals) != count:
+            attributes.fail(f"{count} normals", len(normals))
+        return normals.astype(np.float32)
 
     def _place_positions(self, primitive: Element, shown: Shown, number: int) -> tuple[int, int]:
         """First row and number of rows; primitives of a node often share an accessor."""

@@ -14,12 +14,13 @@ from nispcodec.core.errors import MeshError
 from nispcodec.io.folder import Folder
 from nispcodec.io.read import wavefront
 from nispcodec.io.read.coordinates import without_unusable
+from nispcodec.io.read.normals import with_creases
 from nispcodec.io.read.obj_materials import MaterialReader, Placement
 from nispcodec.io.read.polygons import triangulate
 
-# Statements that carry nothing we could lose: normals, grouping, display.
+# Statements that carry nothing we could lose: grouping, display.
 _SILENT = frozenset(
-    b"vn o g s mg lod shadow_obj trace_obj usemap maplib bevel c_interp d_interp".split()
+    b"o g mg lod shadow_obj trace_obj usemap maplib bevel c_interp d_interp".split()
 )
 _LARGEST_INDEX = 2**31 - 1
 
@@ -49,6 +50,10 @@ class _Statements:
         self.uvs = array("d")
         self.corners = array("q")
         self.corner_uvs = array("q")
+        self.normals = array("d")
+        self.corner_normals = array("q")
+        self.smoothing = array("q")
+        self.smoothed = False
         self.sizes = array("q")
         self.face_lines = array("q")
         self.face_materials = array("q")
@@ -56,13 +61,16 @@ class _Statements:
         self.libraries: list[tuple[int, str]] = []
         self.left_out: dict[str, int] = {}
         self._material = ""
+        self._group = 0
         # Most corners come up in several faces: half the parsing time saved.
-        self._known_corners: dict[bytes, tuple[int, int]] = {}
+        self._known_corners: dict[bytes, tuple[int, int, int]] = {}
 
     def parse(self, data: bytes) -> None:
         handlers: dict[bytes, Callable[[bytes], None]] = {
             b"v": self._position,
             b"vt": self._uv,
+            b"vn": self._normal,
+            b"s": self._smoothing_group,
             b"f": self._face,
             b"fo": self._face,
             b"usemtl": self._use_material,
@@ -109,28 +117,54 @@ class _Statements:
             u = v = math.nan
         self.uvs.extend((u, v))
 
+    def _normal(self, line: bytes) -> None:
+        words = line.split()[1:4]
+        try:
+            self.normals.extend(wavefront.numbers(words, 3, self._place()))
+        except MeshError:
+            # Shading is no reason to refuse an asset: faces without normals are flat.
+            self._leave_out(f"normal {wavefront.text(b' '.join(words)[:32])!r}")
+            self.normals.extend((math.nan,) * 3)
+
+    def _smoothing_group(self, line: bytes) -> None:
+        """A number; 0, or anything else such as "off", is none."""
+        word = wavefront.rest(line)
+        is_number = word.isascii() and word.isdigit() and len(word) < 10
+        self._group, self.smoothed = int(word) if is_number else 0, True
+
     def _face(self, line: bytes) -> None:
         words = line.split()[1:]
         if len(words) < 3:
             self._leave_out("faces of fewer than three corners")
             return
         for word in words:
-            position, uv = self._known_corners.get(word) or self._corner(word)
+            position, uv, normal = self._known_corners.get(word) or self._corner(word)
             self.corners.append(position)
             self.corner_uvs.append(uv)
+            self.corner_normals.append(normal)
         self.sizes.append(len(words))
+        self.smoothing.append(self._group)
         self.face_lines.append(self.line)
         self.face_materials.append(self.materials.setdefault(self._material, len(self.materials)))
 
-    def _corner(self, word: bytes) -> tuple[int, int]:
-        """Position and UV of "1", "1/2", "1//3" or "1/2/3"; the normal is left out."""
+    def _corner(self, word: bytes) -> tuple[int, int, int]:
+        """Position, UV and normal of "1", "1/2", "1//3" or "1/2/3"."""
         parts = word.split(b"/")
         position = self._index(parts[0], len(self.positions) // 3)
         has_uv = len(parts) > 1 and parts[1]
-        corner = position, self._index(parts[1], len(self.uvs) // 2) if has_uv else -1
+        uv = self._index(parts[1], len(self.uvs) // 2) if has_uv else -1
+        corner = position, uv, self._normal_index(parts[2]) if len(parts) > 2 and parts[2] else -1
         if b"-" not in word:  # what counts back means something else in each face
             self._known_corners[word] = corner
         return corner
+
+    def _normal_index(self, word: bytes) -> int:
+        """As `_index`; -1 for what is no index."""
+        try:
+            return self._index(word, len(self.normals) // 3)
+        except MeshError:
+            self._leave_out("normals that there are none of")
+            return -1
 
     def _index(self, word: bytes, count: int) -> int:
         """From 0: positive words count from the file's start, negative ones back from here."""
@@ -172,7 +206,8 @@ def _assemble(
     placements = [materials.placement(name) for name in names]
     uvs, placed = _placed(uvs, uv_faces.astype(np.int64), face_materials, placements)
     uvs, placed = without_unusable(uvs, placed, statements.name, warnings)
-    return TexturedMesh(
+    _warn_of_normals(statements, warnings)
+    mesh = TexturedMesh(
         positions=positions,
         faces=corners[triangles].astype(np.int32),
         uvs=uvs,
@@ -182,6 +217,28 @@ def _assemble(
         textures=tuple(materials.textures),
         warnings=tuple(warnings),
     )
+    return _creased(mesh, statements, triangles, owner)
+
+
+def _warn_of_normals(statements: _Statements, warnings: list[str]) -> None:
+    beyond = _integers(statements.corner_normals) >= len(statements.normals) // 3
+    if beyond.any():
+        warnings.append(
+            f"{statements.name}: {beyond.sum()} corners name a normal that is not there"
+        )
+
+
+def _creased(
+    mesh: TexturedMesh, statements: _Statements, triangles: Int64Array, owner: Int64Array
+) -> TexturedMesh:
+    """With the creases of the file's normals and smoothing groups, if it has any."""
+    numbers = _integers(statements.corner_normals)[triangles]
+    rows = _rows(statements.normals, 3)
+    numbers[numbers >= len(rows)] = -1
+    if not statements.smoothed and (numbers < 0).all():
+        return mesh
+    normals = np.vstack([rows, np.full((1, 3), np.nan)])[numbers]
+    return with_creases(mesh, normals, _integers(statements.smoothing)[owner])
 
 
 def _resolved(written: list[str], materials: MaterialReader) -> tuple[list[str], Int64Array]:

@@ -18,6 +18,7 @@ from nispcodec.io.images import TextureShelf
 from nispcodec.io.read import wavefront
 from nispcodec.io.read.coordinates import without_unusable
 from nispcodec.io.read.names import material_name
+from nispcodec.io.read.normals import with_creases
 from nispcodec.io.read.polygons import triangulate
 
 _TYPES = {
@@ -28,6 +29,7 @@ _TYPES = {
 _ORDERS = {"binary_little_endian": "<", "binary_big_endian": ">"}
 _UV_NAMES = (("s", "t"), ("u", "v"), ("texture_u", "texture_v"))
 _XYZ = ("x", "y", "z")
+_NORMAL = ("nx", "ny", "nz")
 _COLORS = {"red", "diffuse_red", "r"}
 # The line of its own, which a comment may quote.
 _END = re.compile(rb"[\r\n]end_header[ \t]*(?:\r?\n|\r)")
@@ -287,7 +289,7 @@ def _assembled(
         )
     triangles, owner = triangulate(positions[corners], sizes)
     uvs, uv_faces = without_unusable(uvs, corner_uvs[triangles], name, warnings)
-    return TexturedMesh(
+    mesh = TexturedMesh(
         positions=positions,
         faces=corners[triangles].astype(np.int32),
         uvs=uvs,
@@ -297,6 +299,9 @@ def _assembled(
         textures=textures,
         warnings=tuple(warnings),
     )
+    if not set(_NORMAL) <= set(vertex.columns):
+        return mesh
+    return with_creases(mesh, _columns(vertex, _NORMAL, name)[mesh.faces])
 
 
 def _positions(vertex: Element, name: str) -> Float64Array:

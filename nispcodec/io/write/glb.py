@@ -13,7 +13,7 @@ from nispcodec.core.arrays import AnyArray, Float32Array, IndexArray
 from nispcodec.core.asset import Material, Texture, TexturedMesh, TextureMap
 from nispcodec.core.slots import BY_NAME, Slot
 from nispcodec.core.texture import srgb_to_linear
-from nispcodec.io.write.vertices import groups, origin, split_vertices, vertex_normals
+from nispcodec.io.write.vertices import Normals, groups, origin, shading_normals, split_vertices
 
 Json = dict[str, Any]
 
@@ -46,7 +46,7 @@ class _Builder:
 
     def build(self, mesh: TexturedMesh) -> bytes:
         self.origin = origin(mesh)
-        normals = vertex_normals(mesh)
+        normals = shading_normals(mesh)
         primitives = [
             self.primitive(mesh, faces, normals, material, has_uv)
             for material, has_uv, faces in groups(mesh)
@@ -92,16 +92,16 @@ class _Builder:
         self,
         mesh: TexturedMesh,
         faces: IndexArray,
-        normals: Float32Array,
+        normals: Normals,
         material: int,
         has_uv: bool,
     ) -> Json:
-        vertices = split_vertices(mesh, faces)
+        vertices = split_vertices(mesh, faces, normals)
         near = (vertices.positions - self.origin).astype(np.float32)
         positions = self.accessor(near, "VEC3", ARRAY_BUFFER)
         limits = {"min": near.min(axis=0).tolist(), "max": near.max(axis=0).tolist()}
         self.tree["accessors"][positions] |= limits
-        vertex_normal = self.accessor(normals[vertices.sources], "VEC3", ARRAY_BUFFER)
+        vertex_normal = self.accessor(vertices.normals, "VEC3", ARRAY_BUFFER)
         attributes = {"POSITION": positions, "NORMAL": vertex_normal}
         if has_uv:
             flipped = np.column_stack([vertices.uvs[:, 0], 1 - vertices.uvs[:, 1]])

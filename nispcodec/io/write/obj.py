@@ -10,6 +10,7 @@ from nispcodec.core.arrays import AnyArray, Float32Array
 from nispcodec.core.asset import Material, TexturedMesh, TextureMap
 from nispcodec.core.slots import BY_NAME
 from nispcodec.io.write.names import image_names, plain, unique
+from nispcodec.io.write.vertices import shading_normals
 
 
 def obj_files(
@@ -40,14 +41,25 @@ def _obj(mesh: TexturedMesh, library: str, names: list[str]) -> str:
     parts = [f"mtllib {library}\no {plain(mesh.name)}\n"]
     parts.append(_rows(f"v {_decimals(mesh)}\n", mesh.positions))
     parts.append(_rows("vt %.7g %.7g\n", mesh.uvs))
+    corners: list[AnyArray] = [mesh.faces]
+    pattern, plain_pattern = "%d/%d", "%d"
+    if mesh.creases is not None:
+        normals = shading_normals(mesh)
+        parts.append(_rows("vn %.4g %.4g %.4g\n", normals.rows))
+        corners, pattern, plain_pattern = [mesh.faces, normals.faces], "%d/%d/%d", "%d//%d"
     for material in np.unique(mesh.face_materials).tolist():
         parts.append(f"usemtl {names[material]}\n")
         chosen = mesh.face_materials == material
         with_uv, without = chosen & mesh.has_uv, chosen & ~mesh.has_uv
-        both = np.stack([mesh.faces[with_uv], mesh.uv_faces[with_uv]], axis=2) + 1
-        parts.append(_rows("f %d/%d %d/%d %d/%d\n", both))
-        parts.append(_rows("f %d %d %d\n", mesh.faces[without] + 1))
+        dressed = [corners[0], mesh.uv_faces, *corners[1:]]
+        parts.append(_faces(pattern, [each[with_uv] for each in dressed]))
+        parts.append(_faces(plain_pattern, [each[without] for each in corners]))
     return "".join(parts)
+
+
+def _faces(corner: str, indices: list[AnyArray]) -> str:
+    """Lines of three corners each, of indices (m, 3) from 0."""
+    return _rows(f"f {corner} {corner} {corner}\n", np.stack(indices, axis=2) + 1)
 
 
 def _colored_obj(mesh: TexturedMesh, colors: Float32Array) -> str:

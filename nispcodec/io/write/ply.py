@@ -7,7 +7,7 @@ import numpy as np
 from nispcodec.core.arrays import AnyArray, Float32Array, Int32Array
 from nispcodec.core.asset import TexturedMesh
 from nispcodec.io.write.names import image_names
-from nispcodec.io.write.vertices import Vertices, origin, split_vertices
+from nispcodec.io.write.vertices import Vertices, origin, shading_normals, split_vertices
 
 _TYPES = {"<f4": "float", "<f8": "double", "u1": "uchar", "<i4": "int"}
 
@@ -17,7 +17,8 @@ def ply_files(
 ) -> dict[str, bytes]:
     """File name -> bytes of STEM.ply, binary little-endian, and one STEM_NAME for each base color.
 
-    A seam's vertices are doubled for their UVs s, t; colors (n, 4), sRGB-encoded RGBA of each
+    A seam's vertices are doubled for their UVs s, t; those of creases for normals nx, ny, nz.
+    Colors (n, 4), sRGB-encoded RGBA of each
     position, become red, green, blue, alpha. Coordinates are float64 when the mesh is far from the
     origin, else float32. `texnumber` of a face is its image, -1 where it shows none.
     """
@@ -27,7 +28,7 @@ def ply_files(
     images = {names[index]: mesh.textures[index].data for index in used}
     numbers = np.array([-1 if each is None else used.index(each.texture) for each in maps], "<i4")
     shown = np.where(mesh.has_uv, numbers[mesh.face_materials], -1).astype("<i4")
-    vertices = split_vertices(mesh, np.arange(len(mesh.faces)))
+    vertices = split_vertices(mesh, np.arange(len(mesh.faces)), shading_normals(mesh))
     rows = _vertex_rows(mesh, vertices, colors)
     faces = _face_rows(vertices, shown if used else None)
     body = _header(rows, faces, list(images)) + rows.tobytes() + faces.tobytes()
@@ -44,6 +45,9 @@ def _vertex_rows(mesh: TexturedMesh, vertices: Vertices, colors: Float32Array | 
     else:
         fields += [(name, "u1") for name in ("red", "green", "blue", "alpha")]
         values += list(np.rint(colors[vertices.sources] * 255).T)
+    if mesh.creases is not None:
+        fields += [(name, "<f4") for name in ("nx", "ny", "nz")]
+        values += list(vertices.normals.T)
     rows = np.empty(len(vertices.positions), fields)
     for (name, _), column in zip(fields, values, strict=True):
         rows[name] = column

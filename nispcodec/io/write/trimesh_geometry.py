@@ -6,13 +6,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from nispcodec.core.arrays import Float32Array, IndexArray, Uint8Array
+from nispcodec.core.arrays import IndexArray, Uint8Array
 from nispcodec.core.asset import Material, TexturedMesh
 from nispcodec.core.progress import warn
 from nispcodec.core.slots import BY_NAME
 from nispcodec.core.texture import distinct_names, image_bytes
 from nispcodec.io.write.losses import trimesh_losses
-from nispcodec.io.write.vertices import groups, split_vertices, vertex_normals
+from nispcodec.io.write.vertices import Normals, groups, shading_normals, split_vertices
 
 if TYPE_CHECKING:
     import PIL.Image
@@ -24,13 +24,13 @@ Arguments = dict[str, Any]
 def trimesh_arguments(mesh: TexturedMesh) -> dict[str, Arguments]:
     """Material's name -> the keyword arguments of `trimesh.Trimesh` for its faces.
 
-    World frame, UVs with their origin bottom-left, vertices split where UVs are; smooth normals.
+    World frame, UVs with their origin bottom-left, vertices split where UVs and normals are.
     Images are decoded once, and shared. Names are made distinct. The mesh's warnings, and what
     trimesh has no place for, are warned of. Raises MeshError for an image that does not decode.
     """
     warn([*mesh.warnings, *(f"left out {what}" for what in trimesh_losses(mesh))])
     images = [_image(image_bytes(each)) for each in mesh.textures]
-    normals = vertex_normals(mesh)
+    normals = shading_normals(mesh)
     parts = list(groups(mesh))
     names = distinct_names([mesh.materials[material].name for material, _, _ in parts])
     return {
@@ -40,16 +40,16 @@ def trimesh_arguments(mesh: TexturedMesh) -> dict[str, Arguments]:
 
 
 def _arguments(
-    mesh: TexturedMesh, normals: Float32Array, faces: IndexArray, material: PBRMaterial
+    mesh: TexturedMesh, normals: Normals, faces: IndexArray, material: PBRMaterial
 ) -> Arguments:
     from trimesh.visual import TextureVisuals
 
-    vertices = split_vertices(mesh, faces)
+    vertices = split_vertices(mesh, faces, normals)
     has_uv = bool(mesh.has_uv[faces[0]])
     return {
         "vertices": vertices.positions,
         "faces": vertices.faces,
-        "vertex_normals": normals[vertices.sources],
+        "vertex_normals": vertices.normals,
         "visual": TextureVisuals(  # type: ignore[no-untyped-call]
             uv=vertices.uvs if has_uv else None, material=material
         ),

@@ -9,25 +9,58 @@ import numpy as np
 
 from nispcodec.core.arrays import Float32Array, Float64Array, IndexArray, Int64Array, Uint32Array
 from nispcodec.core.asset import TexturedMesh
+from nispcodec.core.connectivity import row_ids
+from nispcodec.core.creases import fan_normals
 
 # Farther from the origin than this many times its extent, a mesh does not survive float32.
 FAR = 100
 
 
 @dataclass(frozen=True)
+class Normals:
+    """The normals that a mesh is shaded with.
+
+    rows   (k, 3) float32, unit
+    faces  (m, 3) int64, into the rows: of each corner
+    """
+
+    rows: Float32Array
+    faces: Int64Array
+
+
+@dataclass(frozen=True)
 class Vertices:
-    """Vertices with one position and one UV each, and the faces between them.
+    """Vertices with one position, one UV and one normal each, and the faces between them.
 
     positions  (n, 3) float64, world frame
     uvs        (n, 2) float32, origin bottom-left; (0, 0) on faces without UV
+    normals    (n, 3) float32, unit
     faces      (m, 3) uint32
     sources    (n,) int64: the position of the mesh that each vertex comes from
     """
 
     positions: Float64Array
     uvs: Float32Array
+    normals: Float32Array
     faces: Uint32Array
     sources: Int64Array
+
+
+def split_vertices(mesh: TexturedMesh, faces: IndexArray, normals: Normals) -> Vertices:
+    """One vertex for each position, UV and normal that `faces` (indices into mesh.faces) use."""
+    pairs = mesh.faces[faces].astype(np.int64) << 32 | (mesh.uv_faces[faces].astype(np.int64) + 1)
+    keys, numbers = np.unique(pairs, return_inverse=True)
+    numbered = numbers.reshape(-1, 3).astype(np.int64) << 32 | normals.faces[faces]
+    whole, inverse = np.unique(numbered, return_inverse=True)
+    keys = keys[whole >> 32]
+    padded = np.vstack([np.zeros((1, 2)), mesh.uvs])
+    return Vertices(
+        positions=mesh.positions[keys >> 32],
+        uvs=padded[keys & 0xFFFFFFFF].astype(np.float32),
+        normals=normals.rows[whole & 0xFFFFFFFF],
+        faces=inverse.reshape(-1, 3).astype(np.uint32),
+        sources=keys >> 32,
+    )
 
 
 def groups(mesh: TexturedMesh) -> Iterator[tuple[int, bool, IndexArray]]:
@@ -37,18 +70,12 @@ def groups(mesh: TexturedMesh) -> Iterator[tuple[int, bool, IndexArray]]:
         yield key // 2, bool(key % 2), np.flatnonzero(keys == key)
 
 
-def split_vertices(mesh: TexturedMesh, faces: IndexArray) -> Vertices:
-    """One vertex for each pair of position and UV that `faces` (indices into mesh.faces) use."""
-    pairs = mesh.faces[faces].astype(np.int64) << 32 | (mesh.uv_faces[faces].astype(np.int64) + 1)
-    keys, inverse = np.unique(pairs, return_inverse=True)
-    sources = keys >> 32
-    padded = np.vstack([np.zeros((1, 2)), mesh.uvs])
-    return Vertices(
-        positions=mesh.positions[sources],
-        uvs=padded[keys & 0xFFFFFFFF].astype(np.float32),
-        faces=inverse.reshape(-1, 3).astype(np.uint32),
-        sources=sources,
-    )
+def shading_normals(mesh: TexturedMesh) -> Normals:
+    """Smooth normals of all positions; where a mesh has creases, normals that break over these."""
+    if mesh.creases is None:
+        return Normals(vertex_normals(mesh), mesh.faces.astype(np.int64))
+    rows, faces = fan_normals(row_ids(mesh.positions)[mesh.faces], mesh.corners, mesh.creases)
+    return Normals(rows.astype(np.float32), faces)
 
 
 def vertex_normals(mesh: TexturedMesh) -> Float32Array:
