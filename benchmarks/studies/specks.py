@@ -1,0 +1,156 @@
+"""Specks: the share of a surface that shows a visibly wrong color, in meshes and in queries.
+
+    python -m benchmarks.studies.specks --models DIR --assets ../shared/assets [--only spot]
+
+DIR holds NAME.nisp for the assets NAME. Results are kept asset by asset.
+
+A point is a speck where its luminance is more than `OFF` from that of the original, which is
+smooth there, and from all that the original shows within `ALLOWED` of it. Smooth is where one chart
+of the original keeps its luminance within `EVEN` as far as `NEAR`: another color beyond a seam is
+no edge.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import click
+import numpy as np
+from scipy.spatial import cKDTree
+
+from benchmarks.measuring.model_records import measured, models_options
+from benchmarks.measuring.result_file import Record
+from nispcodec.core.arrays import BoolArray, Float32Array, Float64Array, Int64Array
+from nispcodec.core.asset import TexturedMesh
+from nispcodec.core.connectivity import connected_faces, row_ids
+from nispcodec.core.document import Frame
+from nispcodec.core.texture import srgb_to_linear
+from nispcodec.format import unpack
+from nispcodec.io.load import load_mesh
+from nispcodec.metrics.color import color_at
+from nispcodec.metrics.surface import Surface, SurfacePoints, frame_of
+from nispcodec.model import NispModel
+
+RESULTS = Path("benchmarks/results/specks.json")
+OFF = 0.15
+EVEN = 0.1
+NEAR = 0.01
+ALLOWED = 2e-3
+"""Normalized frame: half a pixel of a picture of 512 that shows all of the asset."""
+# Points of the original by which its colors about any are known, and how many of them are asked.
+KNOWN = 400_000
+NEIGHBORS = 24
+WAYS = np.array(np.meshgrid(*[[-1, 0, 1]] * 3)).reshape(3, -1).T / np.sqrt(3)
+LUMINANCE = np.array([0.2126, 0.7152, 0.0722], np.float32)
+
+
+@dataclass(frozen=True)
+class Original:
+    """What an original shows about any point: luminance and chart of random points on it.
+
+    surface      in its frame
+    face_charts  the chart of each of its faces (m,)
+    tree         of the random points; an index beyond them is no point
+    luminance    of each, NaN at the end
+    charts       of each, -1 at the end
+    """
+
+    surface: Surface
+    frame: Frame
+    face_charts: Int64Array
+    tree: cKDTree
+    luminance: Float64Array
+    charts: Int64Array
+
+    @classmethod
+    def of(cls, mesh: TexturedMesh, known: int = KNOWN) -> Original:
+        """Look at `known` points. Raises MeshError for a texture that does not decode."""
+        frame, charts = frame_of(mesh), _charts(mesh)
+        surface = Surface.of(mesh, frame)
+        points = surface.sample(known, np.random.default_rng([0, 0]))
+        shown = np.append(luminance(color_at(surface, points)), np.nan)
+        owners = np.append(charts[points.faces], -1)
+        return cls(surface, frame, charts, cKDTree(points.positions), shown, owners)
+
+    def smooth(self, points: SurfacePoints) -> BoolArray:
+        """Where the original is smooth about points (n,) on it."""
+        _, near = self.tree.query(points.positions, NEIGHBORS, distance_upper_bound=NEAR)
+        own = self.charts[near] == self.face_charts[points.faces][:, None]
+        shown = self.luminance[near]
+        low = np.where(own, shown, np.inf).min(axis=1)
+        high = np.where(own, shown, -np.inf).max(axis=1)
+        even: BoolArray = own.any(axis=1) & (high - low <= EVEN)
+        return even
+
+    def specks(
+        self, points: Float64Array, closest: SurfacePoints, shown: Float64Array
+    ) -> BoolArray:
+        """Which of points (n, 3) that show luminances (n,) are specks, where all is smooth."""
+        found = np.abs(shown - luminance(color_at(self.surface, closest))) > OFF
+        suspects = np.flatnonzero(found)
+        if len(suspects):
+            around = (points[suspects, None] + ALLOWED * WAYS).reshape(-1, 3)
+            known = luminance(color_at(self.surface, self.surface.closest(around)))
+            apart = np.abs(known.reshape(len(suspects), -1) - shown[suspects, None])
+            found[suspects] = apart.min(axis=1) > OFF
+        return found
+
+
+def _charts(mesh: TexturedMesh) -> Int64Array:
+    """The chart (m,) of each face: faces that share corners of the same position and UV."""
+    corners = np.concatenate([mesh.corners, mesh.corner_uvs], axis=2).reshape(-1, 5)
+    return connected_faces(row_ids(corners + 0.0).reshape(-1, 3)).astype(np.int64)
+
+
+def luminance(colors: Float32Array) -> Float64Array:
+    """Linear luminance (n,) of colors (n, 4), sRGB-encoded, by ITU-R BT.709."""
+    found: Float64Array = (srgb_to_linear(colors[:, :3]) @ LUMINANCE).astype(np.float64)
+    return found
+
+
+def of_mesh(original: Original, decoded: Surface, samples: int) -> dict[str, float]:
+    """Share of the smooth surface of a decoded mesh that are specks, and what share is smooth."""
+    drawn = decoded.sample(samples, np.random.default_rng([0, 1]))
+    closest = original.surface.closest(drawn.positions)
+    smooth = original.smooth(closest)
+    drawn, closest = drawn[smooth], closest[smooth]
+    found = original.specks(drawn.positions, closest, luminance(color_at(decoded, drawn)))
+    return {"mesh": float(found.mean()), "smooth": float(smooth.mean())}
+
+
+def asked(original: Original, decoded: Surface, samples: int) -> SurfacePoints:
+    """Smooth points of an original to ask for colors.
+
+    Hidden ones, further than `NEAR` from the decoded surface, are left out.
+    """
+    drawn = original.surface.sample(samples, np.random.default_rng([0, 2]))
+    away = np.linalg.norm(decoded.closest(drawn.positions).positions - drawn.positions, axis=1)
+    seen = drawn[away < NEAR]
+    return seen[original.smooth(seen)]
+
+
+def specks(original: Original, model: NispModel, samples: int = 400_000) -> dict[str, float]:
+    """Shares of specks: `mesh`, of the extracted mesh; `queries`, of answers on the original."""
+    decoded = Surface.of(model.to_mesh(), original.frame)
+    points = asked(original, decoded, samples)
+    answers = luminance(model.color(points.positions, frame="normalized"))
+    found = original.specks(points.positions, points, answers)
+    return {**of_mesh(original, decoded, samples), "queries": float(found.mean())}
+
+
+@click.command(help=__doc__)
+@models_options(RESULTS)
+def main(models: Path, assets: Path, only: tuple[str, ...], output: Path) -> None:
+    """Measure what is not measured yet."""
+    for name, found in measured(models, assets, only, output, record).items():
+        click.echo(f"{name}: {found['mesh']:.1e} of the mesh, {found['queries']:.1e} of queries")
+
+
+def record(model: Path, original: Path) -> Record:
+    """The shares of one file."""
+    return {**specks(Original.of(load_mesh(original)), NispModel(unpack(model.read_bytes())))}
+
+
+if __name__ == "__main__":
+    main()

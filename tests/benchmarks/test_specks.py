@@ -1,0 +1,81 @@
+"""Specks are what shows a wrong color where the original is smooth, and nothing else."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from benchmarks.studies.specks import Original, asked, of_mesh
+from nispcodec.core.asset import Texture, TexturedMesh
+from nispcodec.core.texture import encode_image
+from nispcodec.metrics.surface import Surface
+from tests.metrics.shapes import plane
+
+KNOWN = 40_000
+
+
+def painted(dark: tuple[float, float]) -> TexturedMesh:
+    """The unit square in white; the right half of its texture, which nothing shows, is black.
+
+    Cells whose middle lies between `dark` along x look up that half.
+    """
+    pixels = np.full((64, 64, 4), 255, np.uint8)
+    pixels[:, 32:, :3] = 0
+    mesh = plane(cells=20)
+    mesh = replace(
+        mesh,
+        uvs=np.concatenate([mesh.uvs * (0.4, 1) + (start, 0) for start in (0.05, 0.55)]),
+        textures=(Texture("t.png", encode_image(pixels, "png", 0), "image/png"),),
+    )
+    middle = mesh.corners[:, :, 0].mean(axis=1)
+    wrong = (middle > dark[0]) & (middle < dark[1])
+    shifted = mesh.uv_faces + len(mesh.uvs) // 2 * wrong[:, None]
+    return replace(mesh, uv_faces=shifted.astype(np.int32))
+
+
+@pytest.fixture(scope="module")
+def original() -> Original:
+    return Original.of(painted((2, 2)), KNOWN)
+
+
+def shares(original: Original, mesh: TexturedMesh) -> dict[str, float]:
+    return of_mesh(original, Surface.of(mesh, original.frame), 20_000)
+
+
+def test_a_perfect_decode_has_none(original: Original) -> None:
+    found = shares(original, painted((2, 2)))
+    assert found["mesh"] == 0.0
+    assert found["smooth"] > 0.99
+
+
+def test_a_tenth_of_the_surface_shows_a_wrong_color(original: Original) -> None:
+    assert shares(original, painted((0.5, 0.6)))["mesh"] == pytest.approx(0.1, abs=0.01)
+
+
+def test_another_color_beyond_a_seam_is_no_edge() -> None:
+    half = Original.of(painted((0.5, 1)), KNOWN)
+    found = shares(half, painted((0.5, 1)))
+    assert found["smooth"] > 0.99
+    assert found["mesh"] < 1e-3
+    assert shares(half, painted((0.45, 1)))["mesh"] == pytest.approx(0.05, abs=0.01)
+
+
+def test_an_edge_in_the_texture_is_not_smooth(original: Original) -> None:
+    mesh = painted((2, 2))
+    stretched = replace(mesh, uvs=mesh.uvs * (2.4, 1))
+    assert 0.95 < shares(Original.of(stretched, KNOWN), stretched)["smooth"] < 1.0
+
+
+def test_hidden_places_are_not_asked(original: Original) -> None:
+    mesh = painted((2, 2))
+    left = mesh.corners[:, :, 0].max(axis=1) <= 0.5
+    half = replace(
+        mesh,
+        faces=mesh.faces[left],
+        uv_faces=mesh.uv_faces[left],
+        face_materials=mesh.face_materials[left],
+    )
+    seen = asked(original, Surface.of(half, original.frame), 10_000)
+    assert len(seen) == pytest.approx(5000, rel=0.1)
