@@ -25,8 +25,9 @@ if TYPE_CHECKING:
     from nispcodec.catalogue.plan import Asset, Problem, Shard
 
 ENCODE_NAMES = (
-    "preset", "geometry", "target_size", "target_error", "seed", "device", "unwrap", "pad_textures",
-    "texture_format", "texture_quality", "prune", "prune_rate", "prune_rounds", "no_textures",
+    "preset", "geometry", "target_size", "target_total", "target_error", "seed", "device", "unwrap",
+    "pad_textures", "texture_format", "texture_quality", "prune", "prune_rate", "prune_rounds",
+    "no_textures",
 )  # fmt: skip
 """Options that are those of `nisp encode`; its --engine is --backend here, its --threads --jobs."""
 PARTIAL = 3

@@ -58,10 +58,17 @@ def batch_engines() -> Iterable[str]:
 
 
 def texture_formats() -> Iterable[str]:
-    """What images can be made again as."""
+    """What the images of an asset can be made again as."""
     from nispcodec.encode.config import TEXTURE_FORMATS
 
     return TEXTURE_FORMATS
+
+
+def image_formats() -> Iterable[str]:
+    """What images can be made again as, whatever shows them."""
+    from nispcodec.encode.config import IMAGE_FORMATS
+
+    return IMAGE_FORMATS
 
 
 def geometries() -> Iterable[str]:

@@ -24,6 +24,8 @@ from .sources import read_mesh
 from .subcommand import force_option, json_option, subcommand
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from nispcodec.core.asset import TexturedMesh
     from nispcodec.core.progress import Listener, Progress
     from nispcodec.encode.config import EncodeConfig
@@ -31,6 +33,8 @@ if TYPE_CHECKING:
 
 LARGEST_NETWORKS = 1_000_000
 """Bytes of a file besides its textures: more than any preset writes."""
+MOST_OF_A_FILE = 0.8
+"""Share of a file from which on its textures are worth a hint."""
 
 
 @subcommand("encode", "Write a mesh as a .nisp file.")
@@ -55,6 +59,13 @@ LARGEST_NETWORKS = 1_000_000
     callback=parsed_size,
     metavar="SIZE",
     help="Of the file without its textures, such as 20kB.",
+)
+@click.option(
+    "--target-total",
+    callback=parsed_size,
+    metavar="SIZE",
+    help="Of the whole file, such as 100kB: images are coded again, as auto does, to the quality "
+    "that fits.",
 )
 @click.option(
     "--target-error",
@@ -83,8 +94,8 @@ LARGEST_NETWORKS = 1_000_000
 @click.option(
     "--texture-format",
     type=LibraryChoice(texture_formats),
-    help="Re-encode the images. Normal maps and other data keep all channels as sharp: webp is "
-    "lossless for them.",
+    help="Re-encode the images; auto pads them and takes AVIF. Normal maps and other data keep all "
+    "channels as sharp: webp is lossless for them.",
 )
 @click.option("--texture-quality", type=Whole(1, 100), default=90, show_default=True)
 @pruning_options
@@ -110,6 +121,7 @@ def command(
     \b
     Example: nisp encode model.obj -o model.nisp
              nisp encode model.obj -o model.nisp --preset best --target-size 12kB
+             nisp encode model.obj -o model.nisp --target-total 100kB
              nisp encode model.obj -o model.nisp --prune smallest --prune-rate sdf=0.3,uv=0.5
     """
     import nispcodec
@@ -123,7 +135,7 @@ def command(
     model, found = _encoded(asset, config, progress, quiet)
     asset = replace(asset, warnings=(*asset.warnings, *found))
     nispcodec.save(model, output)
-    report = _report(model, asset, mesh, output, time.monotonic() - started)
+    report = _report(model, asset, config, mesh, output, time.monotonic() - started)
     if as_json:
         print_json(report)
     else:
@@ -187,7 +199,12 @@ def _expect_possible(asset: TexturedMesh, config: EncodeConfig, output: Path) ->
 
 
 def _report(
-    model: NispModel, asset: TexturedMesh, source: Path, output: Path, seconds: float
+    model: NispModel,
+    asset: TexturedMesh,
+    config: EncodeConfig,
+    source: Path,
+    output: Path,
+    seconds: float,
 ) -> dict[str, Any]:
     beside = () if source.suffix.lower() == ".glb" else asset.textures
     return {
@@ -199,10 +216,22 @@ def _report(
         },
         "held_as": why(model.document),
         "parts": parts_of(model.document, output.read_bytes()),
+        "hint": _hint(rate(output.read_bytes()), config),
         "warnings": list(asset.warnings),
         "measured": dict(model.document.info),
         "seconds": round(seconds, 1),
     }
+
+
+def _hint(parts: Mapping[str, int], config: EncodeConfig) -> str:
+    """What to do about textures that are most of the file; empty where they are not."""
+    share = parts["textures"] / parts["total"]
+    if share <= MOST_OF_A_FILE or config.target_total or config.texture_format:
+        return ""
+    return (
+        f"textures are {share:.0%} of the file: --texture-format auto codes them as AVIF, "
+        "--target-total 100kB to a size"
+    )
 
 
 def _print_report(report: dict[str, Any]) -> None:
@@ -212,4 +241,6 @@ def _print_report(report: dict[str, Any]) -> None:
     print_group("bytes", parts, "  ")
     print_group("input_bytes", source, "  ")
     print_group("measured", report["measured"], "  ")
+    if report["hint"]:
+        click.echo(f"  {report['hint']}")
     click.echo(f"  encoded in {duration(report['seconds'])}")

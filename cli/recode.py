@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from .choices import LibraryChoice, codings, texture_formats
+from .choices import LibraryChoice, codings, image_formats
 from .outputs import OutputFile, nisp_suffix, output_option, refuse_overwriting
 from .ranges import Whole
 from .report import print_rate
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 )
 @click.option(
     "--texture-format",
-    type=LibraryChoice(texture_formats),
+    type=LibraryChoice(image_formats),
     help="Re-encode the images. Normal maps and other data keep all channels as sharp: webp is "
     "lossless for them.",
 )

@@ -41,7 +41,7 @@ RULES: dict[str, tuple[set[str], set[str]]] = {
     "encode": (
         {"numpy"},
         {"core", "geometry", "dataset", "simplify", "train", "format", "infer", "extract"}
-        | {"model", "edit", "metrics"},
+        | {"model", "edit", "metrics", "render"},
     ),
     # A driver of everything else, by what is public of it.
     "catalogue": (

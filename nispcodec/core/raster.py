@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from nispcodec.core.arrays import BoolArray, Float64Array, Int32Array, Uint8Array
+from nispcodec.core.arrays import BoolArray, Float32Array, Float64Array, Int32Array, Uint8Array
 
 CANDIDATES = 1 << 21
 
@@ -56,6 +56,39 @@ def padded(image: Uint8Array, covered: BoolArray) -> Uint8Array:
         return image
     nearest = distance_transform_edt(~covered, return_distances=False, return_indices=True)
     return np.ascontiguousarray(image[tuple(nearest)])
+
+
+def padded_smoothly(image: Uint8Array, covered: BoolArray) -> Uint8Array:
+    """The image (h, w, c) with smooth colors where `covered` (h, w) is False.
+
+    They are means of larger squares the farther the covered texels are: pull-push (Gortler et al.
+    1996, The Lumigraph). The image itself where nothing is covered.
+    """
+    if not covered.any():
+        return image
+    return np.rint(_filled(image.astype(np.float32), covered)).astype(np.uint8)
+
+
+def _filled(colors: Float32Array, covered: BoolArray) -> Float32Array:
+    """Colors (h, w, c) with those of the image of half the size where `covered` is False."""
+    from PIL.Image import Resampling, fromarray
+
+    if covered.all():
+        return colors
+    coarse = np.moveaxis(_filled(*_halved(colors, covered)), 2, 0)
+    size = covered.shape[::-1]
+    finer = [np.asarray(fromarray(each).resize(size, Resampling.BILINEAR)) for each in coarse]
+    return np.where(covered[..., None], colors, np.stack(finer, axis=2))
+
+
+def _halved(colors: Float32Array, covered: BoolArray) -> tuple[Float32Array, BoolArray]:
+    """Means of the covered texels of each two by two, and where there are any."""
+    height, width = (-(-size // 2) for size in covered.shape)
+    odd = [(0, 2 * height - len(covered)), (0, 2 * width - covered.shape[1])]
+    counted = np.dstack([colors * covered[..., None], covered.astype(np.float32)])
+    squares = np.pad(counted, [*odd, (0, 0)]).reshape(height, 2, width, 2, -1)
+    sums = squares.sum(axis=(1, 3))
+    return sums[..., :-1] / np.maximum(sums[..., -1:], 1), sums[..., -1] > 0
 
 
 def _covered(

@@ -122,8 +122,13 @@ def reencode(
         _reencoded(texture, kind, quality, number in data)
         for number, texture in enumerate(textures)
     ]
-    names = distinct_names([texture.name for texture in again])
-    return tuple(replace(texture, name=name) for texture, name in zip(again, names, strict=True))
+    return named_apart(again)
+
+
+def named_apart(textures: Sequence[Texture]) -> tuple[Texture, ...]:
+    """The textures with names that differ (`distinct_names`)."""
+    names = distinct_names([texture.name for texture in textures])
+    return tuple(replace(each, name=name) for each, name in zip(textures, names, strict=True))
 
 
 def distinct_names(names: Sequence[str]) -> list[str]:
@@ -146,11 +151,17 @@ def _reencoded(texture: Texture, kind: str, quality: int, is_data: bool) -> Text
     pixels = image_bytes(texture)
     if kind == "jpeg" and not _is_opaque(pixels):
         return texture
-    encoded = encode_image(pixels, kind, quality, is_data)
-    if is_data and len(encoded) >= len(texture.data):
-        return texture
+    encoded = encoded_texture(texture.name, pixels, kind, quality, is_data)
+    return texture if is_data and len(encoded.data) >= len(texture.data) else encoded
+
+
+def encoded_texture(
+    name: str, pixels: Uint8Array, kind: str, quality: int, is_data: bool
+) -> Texture:
+    """Pixels as a texture (`encode_image`), whose name gets the suffix of its kind."""
     suffix = "jpg" if kind == "jpeg" else kind
-    return Texture(f"{PurePath(texture.name).stem}.{suffix}", encoded, f"image/{kind}")
+    data = encode_image(pixels, kind, quality, is_data)
+    return Texture(f"{PurePath(name).stem}.{suffix}", data, f"image/{kind}")
 
 
 def image_bytes(texture: Texture) -> Uint8Array:

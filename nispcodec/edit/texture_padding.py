@@ -10,7 +10,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from nispcodec.core.arrays import Float64Array
+from nispcodec.core.arrays import BoolArray, Float64Array
 from nispcodec.core.asset import Texture, TexturedMesh
 from nispcodec.core.extras import require
 from nispcodec.core.raster import coverage, padded
@@ -24,7 +24,7 @@ def with_padded_textures(mesh: TexturedMesh, quality: int) -> tuple[Texture, ...
     """The mesh's textures with the nearest used texel's color where no face lies.
 
     Formats and names stay; `quality`, 1 to 100, is for lossy formats. An image that no face uses,
-    or that some face uses across its border, stays as it is. Raises MeshError for a texture that
+    or that some face leaves or repeats, stays as it is. Raises MeshError for a texture that
     does not decode, NispError without the extra `encode`.
     """
     require("scipy", extra="encode", what_for="padding textures")
@@ -32,21 +32,38 @@ def with_padded_textures(mesh: TexturedMesh, quality: int) -> tuple[Texture, ...
 
 
 def _padded(mesh: TexturedMesh, number: int, quality: int) -> Texture:
-    texture, uvs = mesh.textures[number], _uvs(mesh, number)
-    if not len(uvs) or uvs.min() < -ROUNDING or uvs.max() > 1 + ROUNDING:
-        return texture
+    texture = mesh.textures[number]
     pixels = image_bytes(texture)
-    image = padded(pixels, coverage(uvs, *pixels.shape[:2]))
+    covered = used_texels(mesh, number, *pixels.shape[:2])
+    if covered is None:
+        return texture
     is_data = number in data_maps(mesh.materials)
-    data = encode_image(image, texture.mime.split("/")[1], quality, is_data)
+    data = encode_image(padded(pixels, covered), texture.mime.split("/")[1], quality, is_data)
     return replace(texture, data=data)
 
 
-def _uvs(mesh: TexturedMesh, number: int) -> Float64Array:
-    """(f, 3, 2): UVs of the faces that show the image, where it repeats in its first repetition."""
+def used_texels(mesh: TexturedMesh, number: int, height: int, width: int) -> BoolArray | None:
+    """(height, width): which texels of an image faces show; None where none is to be padded.
+
+    That is an image that no face uses, one that is used everywhere, and one that some face leaves
+    or repeats.
+    """
+    uvs, repeated = _uvs(mesh, number)
+    if not len(uvs) or uvs.min() < -ROUNDING or uvs.max() > 1 + repeated + ROUNDING:
+        return None
+    covered = coverage(uvs, height, width)
+    if uvs.max() > 1 + ROUNDING:
+        for shift in ([1.0, 0.0], [0.0, 1.0], [1.0, 1.0]):
+            covered |= coverage(uvs - shift, height, width)
+    return None if covered.all() else covered
+
+
+def _uvs(mesh: TexturedMesh, number: int) -> tuple[Float64Array, bool]:
+    """(f, 3, 2): UVs of the faces that show the image; whether it repeats: it begins in [0, 1]."""
     uses = [[m for m in each.maps.values() if m.texture == number] for each in mesh.materials]
     shown = np.array([bool(each) for each in uses], np.bool_)
     uvs = mesh.corner_uvs[shown[mesh.face_materials] & mesh.has_uv]
-    if all(used.wrap == ("repeat", "repeat") for each in uses for used in each):
+    repeats = all(used.wrap == ("repeat", "repeat") for each in uses for used in each)
+    if repeats:
         uvs = uvs - np.floor(uvs.min(axis=1, keepdims=True) + ROUNDING)
-    return uvs
+    return uvs, repeats

@@ -8,17 +8,20 @@ from nispcodec.core.asset import Material, Texture, TexturedMesh
 from nispcodec.core.progress import Listener, Progress
 from nispcodec.core.texture import data_maps, reencode
 from nispcodec.edit.texture_padding import with_padded_textures
-from nispcodec.encode.config import EncodeConfig
+from nispcodec.encode.compact_images import compact_textures
+from nispcodec.encode.config import CompactConfig, EncodeConfig
 
 
 def appearance(
-    mesh: TexturedMesh, config: EncodeConfig, progress: Listener
+    mesh: TexturedMesh, config: EncodeConfig, compact: CompactConfig, progress: Listener
 ) -> tuple[tuple[Material, ...], tuple[Texture, ...]]:
     """Materials and textures: left out, padded, re-encoded, or as they are."""
     if not config.textures:
         return tuple(replace(material, maps={}) for material in mesh.materials), ()
     progress(Progress(stage="textures"))
     textures, quality = mesh.textures, config.texture_quality
+    if config.texture_format == "auto":
+        return mesh.materials, compact_textures(mesh, quality, compact)
     if config.pad_textures:
         textures = with_padded_textures(mesh, 100 if config.texture_format else quality)
     if config.texture_format is not None:

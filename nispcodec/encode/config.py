@@ -17,7 +17,8 @@ from nispcodec.train.config import TrainConfig
 if TYPE_CHECKING:
     from nispcodec.train.prune import Pruning
 
-TEXTURE_FORMATS = ("webp", "avif", "jpeg")
+IMAGE_FORMATS = ("webp", "avif", "jpeg")
+TEXTURE_FORMATS = ("auto", *IMAGE_FORMATS)
 GEOMETRIES = ("auto", "field", "mesh")
 ENGINES = ("auto", "native", "torch")
 PRESETS = (*TrainConfig().budgets, "paper")
@@ -36,10 +37,13 @@ class EncodeConfig:
     device          "auto", "cpu", "cuda", "cuda:1"; CUDA trains with torch
     threads         cores to use; 0: all
     pad_textures    fills what no face uses of an image with the colors beside it
-    texture_format  None keeps the image files as they are; "webp", "avif", "jpeg" re-encode them
+    texture_format  None keeps the image files as they are; "webp", "avif", "jpeg" re-encode them;
+                    "auto" pads them too, and codes colors as AVIF, data as AVIF or without loss
     texture_quality 1 to 100, for a `texture_format` and for images that are padded
     textures        False leaves the images out
     target_size     bytes of the file without its textures; the networks are made to fit
+    target_total    bytes of the whole file; images are padded and coded again, none is resized, and
+                    the share of images and geometry is chosen by pictures of the asset
     target_error    mean distance to the surface (normalized frame); the SDF is made to fit
     prune           None, "smallest", "smallest_global" or "large_final": lottery tickets
     prune_rate      share of weights to prune, 0 to below 1; or by network: {"sdf": 0.3, "uv": 0.5}
@@ -59,6 +63,7 @@ class EncodeConfig:
     texture_quality: int = 90
     textures: bool = True
     target_size: float | None = None
+    target_total: float | None = None
     target_error: float | None = None
     prune: str | None = None
     prune_rate: float | Mapping[str, float] = 0.5
@@ -79,12 +84,22 @@ class EncodeConfig:
             raise NispError("engine native, preset paper, device cuda: expected one of them")
         if self.geometry == "mesh" and (self.preset == "paper" or self.prune):
             raise NispError("geometry mesh, preset paper, prune: expected one of them")
-        targets = [each for each in (self.target_size, self.target_error) if each is not None]
-        if len(targets) > 1 or (targets and self.preset == "paper"):
-            raise NispError("target size, target error, preset paper: expected one of them")
-        if any(not 0 < each < math.inf for each in targets):
-            raise NispError(f"target size or error: expected more than 0, found {targets[0]:g}")
+        self._expect_one_target()
         self.prunings()
+
+    def _expect_one_target(self) -> None:
+        every = (self.target_size, self.target_total, self.target_error)
+        targets = [each for each in every if each is not None]
+        if len(targets) > 1 or (targets and self.preset == "paper"):
+            raise NispError(
+                "target size, target total, target error, preset paper: expected one of them"
+            )
+        if any(not 0 < each < math.inf for each in targets):
+            raise NispError(
+                f"target size, total or error: expected more than 0, found {targets[0]:g}"
+            )
+        if self.target_total and not (self.textures and self.texture_format in (None, "auto")):
+            raise NispError("target total: expected the textures, in the format auto or none told")
 
     def prunings(self) -> dict[str, Pruning]:
         """The pruning of every network that is to be pruned, by its name."""
@@ -156,6 +171,46 @@ class FormConfig:
 
 
 @dataclass(frozen=True)
+class CompactConfig:
+    """How images are coded in the fewest bytes.
+
+    most_error   of data maps as AVIF, root of the mean square of a texel over its channels' range:
+                 a normal is then turned by about 1.5 degrees
+    finer        steps of quality until a data map is as near
+    """
+
+    most_error: float = 0.013
+    finer: int = 5
+
+
+@dataclass(frozen=True)
+class TotalConfig:
+    """How the bytes of a total are shared between images and geometry.
+
+    views            pictures around the asset, by which errors are told ...
+    size             ... and the pixels of their sides
+    qualities        of images whose error is measured; between them it is interpolated
+    least_geometry   bytes that no surface does without
+    filled           share of what the smallest images leave that geometry is fitted to at most: a
+                     fit may be that much larger than it is asked to be
+    mesh_slope       of the squared error of pictures over the bytes of triangles, as logarithms ...
+    field_slope      ... and over those of networks: more of them help less
+    octaves          by which the bytes of the geometry may differ from what the preset takes
+    worth_a_fit      share of the expected error from which down another split is tried
+    """
+
+    views: int = 8
+    size: int = 512
+    qualities: tuple[int, ...] = (1, 20, 45, 70, 90, 100)
+    least_geometry: float = 500
+    filled: float = 0.95
+    mesh_slope: float = 1.0
+    field_slope: float = 0.5
+    octaves: tuple[float, ...] = (-2, -1.5, -1, -0.5, 0.5, 1, 1.5, 2)
+    worth_a_fit: float = 0.85
+
+
+@dataclass(frozen=True)
 class Tuning:
     """Every tuned number of an encode. Tests make them small; users have `EncodeConfig`.
 
@@ -169,6 +224,8 @@ class Tuning:
     sampling: SamplingConfig = field(default_factory=SamplingConfig)
     training: TrainConfig = field(default_factory=TrainConfig)
     forms: FormConfig = field(default_factory=FormConfig)
+    compact: CompactConfig = field(default_factory=CompactConfig)
+    total: TotalConfig = field(default_factory=TotalConfig)
     negligible: float = 1e-7
     notable_open: float = 0.02
 

@@ -21,6 +21,7 @@ from nispcodec.encode.mesh_form import MeshForm
 from nispcodec.encode.report import measured
 from nispcodec.encode.single_precision import short_frame, short_uv_map
 from nispcodec.encode.stages import with_overall
+from nispcodec.encode.total import encode_to_total
 from nispcodec.geometry.analysis import Analysis, analyze
 from nispcodec.infer.parallel import on_cores
 from nispcodec.model import NispModel
@@ -39,9 +40,15 @@ def encode(
     network does not converge, and, before the work, for a device or an engine that is not there,
     NispError for a target that cannot be met and for a package that is missing.
     """
-    config = config or EncodeConfig()
+    config, numbers = config or EncodeConfig(), tuning or Tuning()
+
+    def encoded(how: EncodeConfig, listen: Listener) -> NispModel:
+        return _encoded(mesh, how, listen, numbers)
+
     with on_cores(config.threads):
-        return _encoded(mesh, config, progress, tuning or Tuning())
+        if config.target_total is not None:
+            return encode_to_total(mesh, config, numbers.total, encoded, progress)
+        return encoded(config, progress)
 
 
 def _encoded(
@@ -50,7 +57,7 @@ def _encoded(
     progress = with_overall(progress, config, tuning.training)
     published = config.preset == "paper"
     engine = choose_engine(config.engine, config.device, published, progress)
-    materials, textures = appearance(mesh, config, progress)
+    materials, textures = appearance(mesh, config, tuning.compact, progress)
     progress(Progress(stage="charts and hidden walls"))
     analysis = analyze(mesh, config.seed, tuning.geometry_of(config.preset))
     for warning in analysis.solid.warnings:

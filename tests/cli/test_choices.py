@@ -12,7 +12,7 @@ from nispcodec_cli import COMMANDS
 from nispcodec_cli.choices import LibraryChoice
 
 from nispcodec.core.slots import SLOTS
-from nispcodec.encode.config import PRESETS, TEXTURE_FORMATS
+from nispcodec.encode.config import IMAGE_FORMATS, PRESETS, TEXTURE_FORMATS
 from nispcodec.format.codings.registry import CODINGS
 from nispcodec.io.load import READERS
 from nispcodec.io.save import SUFFIXES
@@ -28,7 +28,7 @@ from tests.cli.conftest import done, nisp, refused
         ("encode", "--preset", PRESETS),
         ("encode", "--texture-format", TEXTURE_FORMATS),
         ("encode", "--prune", STRATEGIES),
-        ("recode", "--texture-format", TEXTURE_FORMATS),
+        ("recode", "--texture-format", IMAGE_FORMATS),
         ("recode", "--coding", CODINGS),
         ("decode", "--output FILE", SUFFIXES),
         ("render", "--output FILE", images.SUFFIXES),

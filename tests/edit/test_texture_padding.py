@@ -11,7 +11,7 @@ import pytest
 
 from nispcodec.core.asset import Material, Texture, TexturedMesh, TextureMap
 from nispcodec.core.texture import encode_image, image_bytes
-from nispcodec.edit.texture_padding import with_padded_textures
+from nispcodec.edit.texture_padding import used_texels, with_padded_textures
 from tests.geometry.shapes import soup
 
 RED, BLUE, GRAY = (255, 0, 0, 255), (0, 0, 255, 255), (90, 90, 90, 255)
@@ -40,6 +40,22 @@ def test_gutters_take_the_nearest_color_and_charts_keep_theirs(shift: float) -> 
     assert set(map(tuple, image.reshape(-1, 4))) == {RED, BLUE}
     assert tuple(image[7, 0]) == RED
     assert tuple(image[4, 31]) == BLUE
+
+
+def test_faces_that_cross_the_border_of_a_repeated_image_use_both_sides() -> None:
+    mesh = atlas()
+    mesh = replace(mesh, uvs=mesh.uvs + np.array([0.5, 0.0]))
+    used = used_texels(mesh, 0, 16, 32)
+    assert used is not None
+    # The upper right chart goes on at the left border, the lower left one ends at the right one.
+    assert used[:4, 8:16].all()
+    assert used[8:, 16:].all()
+    assert used.sum() == 4 * 8 + 8 * 16
+
+
+def test_an_image_that_is_used_everywhere_stays() -> None:
+    mesh = atlas()
+    assert used_texels(replace(mesh, uvs=mesh.uvs * 2), 0, 16, 32) is None
 
 
 def test_images_that_no_face_shows_stay() -> None:

@@ -16,7 +16,7 @@ from nispcodec.geometry.config import MergingConfig
         ({"preset": "huge"}, "preset: expected one of .*paper, found 'huge'"),
         (
             {"texture_format": "gif"},
-            "texture format: expected one of webp, avif, jpeg, found 'gif'",
+            "texture format: expected one of auto, webp, avif, jpeg, found 'gif'",
         ),
         ({"texture_quality": 0}, "texture quality: expected 1 to 100, found 0"),
         ({"texture_quality": 101}, "texture quality: expected 1 to 100, found 101"),
@@ -27,9 +27,13 @@ from nispcodec.geometry.config import MergingConfig
         ({"device": "cuda:"}, "device: expected auto"),
         ({"target_size": 9e3, "target_error": 1e-3}, "expected one of them"),
         ({"preset": "paper", "target_size": 9e3}, "expected one of them"),
-        ({"target_error": 0.0}, "target size or error: expected more than 0, found 0"),
-        ({"target_size": math.inf}, "target size or error: expected more than 0, found inf"),
-        ({"target_size": math.nan}, "target size or error: expected more than 0, found nan"),
+        ({"target_total": 9e4, "target_size": 9e3}, "expected one of them"),
+        ({"target_total": -1.0}, "target size, total or error: expected more than 0, found -1"),
+        ({"target_total": 9e4, "textures": False}, "target total: expected the textures"),
+        ({"target_total": 9e4, "texture_format": "webp"}, "target total: expected the textures"),
+        ({"target_error": 0.0}, "target size, total or error: expected more than 0, found 0"),
+        ({"target_size": math.inf}, "target size, total or error: expected more than 0, found inf"),
+        ({"target_size": math.nan}, "target size, total or error: expected more than 0, found nan"),
     ],
 )
 def test_choices_that_make_no_sense_are_refused(options: dict[str, Any], text: str) -> None:

@@ -1,0 +1,180 @@
+"""A whole asset, images included, in so many bytes, shared so that pictures lose least."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from nispcodec.core.arrays import Float32Array
+from nispcodec.core.asset import Texture, TexturedMesh
+from nispcodec.core.document import Document
+from nispcodec.core.errors import NispError
+from nispcodec.core.extras import require
+from nispcodec.core.progress import Listener, Progress
+from nispcodec.encode.compact_images import compact_images
+from nispcodec.encode.config import EncodeConfig, TotalConfig
+from nispcodec.encode.image_shares import ImageShares
+from nispcodec.format import pack
+from nispcodec.metrics.psnr import psnr
+from nispcodec.model import NispModel
+from nispcodec.render.camera import turntable
+from nispcodec.render.remembered import RememberedScene
+from nispcodec.render.views import on_white, render_views, scene_of
+
+Geometry = Callable[[EncodeConfig, Listener], NispModel]
+IMAGES, FIRST, SECOND = 0.2, 0.55, 0.9
+"""Shares of the work that are done after the images are known, and after each geometry."""
+MEASURED = 32
+"""Bytes that `rendered_psnr` takes in a file, at most."""
+
+
+def encode_to_total(
+    mesh: TexturedMesh,
+    config: EncodeConfig,
+    tuning: TotalConfig,
+    geometry: Geometry,
+    progress: Listener,
+) -> NispModel:
+    """The asset in `config.target_total` bytes at most; `geometry` encodes it without textures.
+
+    The share of the images is what the preset's geometry leaves, or another where pictures of it
+    are expected to lose clearly less and do. Raises NispError, before anything is fitted, for a
+    total that the images alone do not allow, else for one that leaves the geometry too little.
+    """
+    if not mesh.textures:
+        return geometry(
+            replace(config, target_total=None, target_size=config.target_total), progress
+        )
+    require("embreex", "igl", extra="render", what_for="a target total")
+    progress(Progress(stage="textures", overall=0.0))
+    shares = ImageShares(compact_images(mesh))
+    total = float(config.target_total or 0)
+    _expect_possible(total, shares.least, tuning)
+    pictures = Pictures(mesh, tuning)
+    shares.measure(tuning.qualities, total, pictures.error_of_textures)
+    totals = _Totals(mesh, config, tuning, geometry, shares, pictures, total)
+    splits = totals.splits(progress)
+    progress(Progress(stage="textures", overall=SECOND))
+    return min(map(totals.whole, splits), key=lambda each: each[1])[0]
+
+
+class Pictures:
+    """Pictures of an original from all around, on white, and how far others are from them."""
+
+    def __init__(self, mesh: TexturedMesh, tuning: TotalConfig) -> None:
+        self._views, self._size = turntable(tuning.views), tuning.size
+        self._scene = RememberedScene(scene_of(mesh))
+        self.frame = self._scene.frame
+        self._pictures = self._drawn(self._scene)
+
+    def error_of_textures(self, textures: tuple[Texture, ...]) -> float:
+        """Mean squared error of pictures of the original with other images."""
+        return self.error(self._scene.with_textures(textures))
+
+    def error(self, scene: RememberedScene) -> float:
+        """Mean squared error of pictures of a scene, over RGB values in [0, 1]."""
+        pairs = zip(self._pictures, self._drawn(scene), strict=True)
+        return float(np.mean([np.square(first - second).mean() for first, second in pairs]))
+
+    def _drawn(self, scene: RememberedScene) -> list[Float32Array]:
+        return [on_white(each) for each in render_views(scene, self._views, self._size)]
+
+
+@dataclass(frozen=True)
+class Split:
+    """A geometry with the images as they came: its bytes, what pictures lose, and its surface."""
+
+    document: Document
+    bytes: int
+    error: float
+    scene: RememberedScene
+
+
+@dataclass(frozen=True)
+class _Totals:
+    """One asset and everything that a split of its bytes depends on."""
+
+    mesh: TexturedMesh
+    config: EncodeConfig
+    tuning: TotalConfig
+    geometry: Geometry
+    shares: ImageShares
+    pictures: Pictures
+    total: float
+
+    def splits(self, progress: Listener) -> list[Split]:
+        """The split of the preset's geometry, and one that is expected to be better, if any."""
+        first = self.split(0.0, _within(progress, IMAGES, FIRST))
+        size = self.better_size(first)
+        if not size:
+            return [first]
+        try:
+            return [first, self.split(size, _within(progress, FIRST, SECOND))]
+        except NispError as why:
+            progress(Progress(stage="fit", note=str(why), overall=SECOND))
+            return [first]
+
+    def split(self, size: float, progress: Listener) -> Split:
+        """A geometry of `size` bytes; 0: as the preset has it, or as large as there is room."""
+        found, room = self._document(size, progress), self.total - self.shares.least
+        if not size and self._own(found) > self.tuning.filled * room:
+            found = self._document(self.tuning.filled * room, progress)
+        progress(Progress(stage="surface", overall=1.0))
+        scene = RememberedScene(scene_of(NispModel(found).to_mesh(), self.pictures.frame))
+        return Split(found, self._own(found), self.pictures.error(scene), scene)
+
+    def better_size(self, found: Split) -> float:
+        """Bytes of geometry that are expected to be clearly better than those of a split, or 0."""
+        tuning = self.tuning
+        slope = tuning.field_slope if found.document.field else tuning.mesh_slope
+        now = found.error + self.shares.error(self.total - found.bytes)
+        expected = {
+            found.bytes * 2**octave: found.error * 2 ** (-slope * octave)
+            + self.shares.error(self.total - found.bytes * 2**octave)
+            for octave in tuning.octaves
+        }
+        size = min(expected, key=lambda each: expected[each])
+        return size if expected[size] < tuning.worth_a_fit * now else 0.0
+
+    def whole(self, split: Split) -> tuple[NispModel, float]:
+        """The split with images in the bytes that it leaves, and what pictures of it lose."""
+        textures = self.shares.fitted(self.total - split.bytes - MEASURED)
+        error = self.pictures.error(split.scene.with_textures(textures))
+        info = {**split.document.info, "rendered_psnr": float(f"{psnr(error, 1.0):.4g}")}
+        return NispModel(replace(split.document, textures=textures, info=info)), error
+
+    def _document(self, size: float, progress: Listener) -> Document:
+        config = replace(self.config, target_total=None, target_size=size or None, textures=False)
+        try:
+            found = self.geometry(config, progress).document
+        except NispError as why:
+            if not size:
+                raise
+            raise NispError(
+                f"target total: {size:,.0f} bytes are left for geometry: {why}"
+            ) from why
+        return replace(found, materials=self.mesh.materials, textures=self.mesh.textures)
+
+    def _own(self, document: Document) -> int:
+        """Bytes besides those of the images, with their names."""
+        return len(pack(replace(document, textures=self.shares.smallest))) - self.shares.least
+
+
+def _expect_possible(total: float, images: int, tuning: TotalConfig) -> None:
+    least = images + tuning.least_geometry
+    if total < least:
+        raise NispError(
+            f"target total: expected at least {least:,.0f} bytes, {images:,} of them for this "
+            f"asset's images at the lowest quality, found {total:,.0f}; smaller images take less"
+        )
+
+
+def _within(listen: Listener, start: float, end: float) -> Listener:
+    """A listener to a part of the work, which tells how far the whole is."""
+
+    def heard(update: Progress) -> None:
+        listen(replace(update, overall=start + (end - start) * update.overall))
+
+    return heard
