@@ -19,8 +19,6 @@ from nispcodec.encode.config import CompactConfig
 
 LEAST, MOST = 1, 100
 """Quality of an image."""
-TYPICAL = 50
-"""The quality at which ways of padding are compared: which is smaller depends little on it."""
 
 
 class CompactImage:
@@ -29,7 +27,10 @@ class CompactImage:
     Data maps keep all channels as sharp. Raises MeshError for a texture that does not decode.
     """
 
-    def __init__(self, mesh: TexturedMesh, number: int) -> None:
+    def __init__(
+        self, mesh: TexturedMesh, number: int, config: CompactConfig = CompactConfig()
+    ) -> None:
+        self._config = config
         self.original = mesh.textures[number]
         self.is_data = number in data_maps(mesh.materials)
         self._pixels = image_bytes(self.original)
@@ -46,12 +47,12 @@ class CompactImage:
             self._coded[quality] = found if smaller else self.original
         return self._coded[quality]
 
-    def near(self, quality: int, config: CompactConfig) -> Texture:
+    def near(self, quality: int) -> Texture:
         """As `at`, but data of no error larger than `most_error`, without loss if need be."""
         if not self.is_data:
             return self.at(quality)
-        for finer in range(quality, MOST + 1, config.finer):
-            if self._error(self.at(finer)) <= config.most_error:
+        for finer in range(quality, MOST + 1, self._config.finer):
+            if self._error(self.at(finer)) <= self._config.most_error:
                 return self.at(finer)
         exact = encoded_texture(self.original.name, self._pixels, "webp", MOST, is_data=True)
         return min(exact, self.original, key=lambda each: len(each.data))
@@ -72,16 +73,18 @@ class CompactImage:
         return self._padded
 
     def _typical_bytes(self, pixels: Uint8Array) -> int:
-        return len(encode_image(pixels, "avif", TYPICAL, self.is_data))
+        return len(encode_image(pixels, "avif", self._config.typical, self.is_data))
 
 
-def compact_images(mesh: TexturedMesh) -> list[CompactImage]:
+def compact_images(
+    mesh: TexturedMesh, config: CompactConfig = CompactConfig()
+) -> list[CompactImage]:
     """The images of a mesh, to be coded. Raises MeshError for one that does not decode."""
-    return [CompactImage(mesh, number) for number in range(len(mesh.textures))]
+    return [CompactImage(mesh, number, config) for number in range(len(mesh.textures))]
 
 
 def compact_textures(
     mesh: TexturedMesh, quality: int, config: CompactConfig
 ) -> tuple[Texture, ...]:
     """The textures of a mesh at a quality of 1 to 100, data no further off than `config` says."""
-    return named_apart([image.near(quality, config) for image in compact_images(mesh)])
+    return named_apart([image.near(quality) for image in compact_images(mesh, config)])

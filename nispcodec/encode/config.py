@@ -177,10 +177,13 @@ class CompactConfig:
     most_error   of data maps as AVIF, root of the mean square of a texel over its channels' range:
                  a normal is then turned by about 1.5 degrees
     finer        steps of quality until a data map is as near
+    typical      quality at which ways of padding are compared: which of them takes fewer bytes
+                 depends little on it
     """
 
     most_error: float = 0.013
     finer: int = 5
+    typical: int = 50
 
 
 @dataclass(frozen=True)
@@ -197,6 +200,8 @@ class TotalConfig:
     field_slope      ... and over those of networks: more of them help less
     octaves          by which the bytes of the geometry may differ from what the preset takes
     worth_a_fit      share of the expected error from which down another split is tried
+    measured_bytes   that the PSNR of the pictures takes in a file, at most
+    done             share of the work after the images, the first geometry and the second
     """
 
     views: int = 8
@@ -208,6 +213,8 @@ class TotalConfig:
     field_slope: float = 0.5
     octaves: tuple[float, ...] = (-2, -1.5, -1, -0.5, 0.5, 1, 1.5, 2)
     worth_a_fit: float = 0.85
+    measured_bytes: int = 32
+    done: tuple[float, float, float] = (0.2, 0.55, 0.9)
 
 
 @dataclass(frozen=True)

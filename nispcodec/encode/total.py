@@ -24,10 +24,6 @@ from nispcodec.render.remembered import RememberedScene
 from nispcodec.render.views import on_white, render_views, scene_of
 
 Geometry = Callable[[EncodeConfig, Listener], NispModel]
-IMAGES, FIRST, SECOND = 0.2, 0.55, 0.9
-"""Shares of the work that are done after the images are known, and after each geometry."""
-MEASURED = 32
-"""Bytes that `rendered_psnr` takes in a file, at most."""
 
 
 def encode_to_total(
@@ -56,7 +52,7 @@ def encode_to_total(
     shares.measure(tuning.qualities, total, pictures.error_of_textures)
     totals = _Totals(mesh, config, tuning, geometry, shares, pictures, total)
     splits = totals.splits(progress)
-    progress(Progress(stage="textures", overall=SECOND))
+    progress(Progress(stage="textures", overall=tuning.done[-1]))
     return min(map(totals.whole, splits), key=lambda each: each[1])[0]
 
 
@@ -106,14 +102,14 @@ class _Totals:
 
     def splits(self, progress: Listener) -> list[Split]:
         """The split of the preset's geometry, and one that is expected to be better, if any."""
-        first = self.split(0.0, _within(progress, IMAGES, FIRST))
+        first = self.split(0.0, _within(progress, *self.tuning.done[:2]))
         size = self.better_size(first)
         if not size:
             return [first]
         try:
-            return [first, self.split(size, _within(progress, FIRST, SECOND))]
+            return [first, self.split(size, _within(progress, *self.tuning.done[1:]))]
         except NispError as why:
-            progress(Progress(stage="fit", note=str(why), overall=SECOND))
+            progress(Progress(stage="fit", note=str(why), overall=self.tuning.done[-1]))
             return [first]
 
     def split(self, size: float, progress: Listener) -> Split:
@@ -140,7 +136,7 @@ class _Totals:
 
     def whole(self, split: Split) -> tuple[NispModel, float]:
         """The split with images in the bytes that it leaves, and what pictures of it lose."""
-        textures = self.shares.fitted(self.total - split.bytes - MEASURED)
+        textures = self.shares.fitted(self.total - split.bytes - self.tuning.measured_bytes)
         error = self.pictures.error(split.scene.with_textures(textures))
         info = {**split.document.info, "rendered_psnr": float(f"{psnr(error, 1.0):.4g}")}
         return NispModel(replace(split.document, textures=textures, info=info)), error

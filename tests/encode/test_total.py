@@ -82,7 +82,7 @@ def test_another_share_is_tried_and_the_better_one_taken() -> None:
     assert len(pack(best)) <= 4_000
     # The ballast is worth nothing: with less of it images are better.
     assert (geometry.asked[1].target_size or 0) < 1_000
-    assert best.info["rendered_psnr"] > one.info["rendered_psnr"]
+    assert float(best.info["rendered_psnr"]) > float(one.info["rendered_psnr"])
 
 
 def test_a_share_that_geometry_cannot_have_changes_nothing() -> None:
