@@ -127,6 +127,13 @@ def mesh_suffixes() -> tuple[str, ...]:
     return SUFFIXES
 
 
+def compressions() -> Iterable[str]:
+    """How the geometry of a GLB can be made smaller."""
+    from nispcodec.io.write.gltf_compression import COMPRESSIONS
+
+    return COMPRESSIONS
+
+
 def picture_suffixes() -> tuple[str, ...]:
     """Of the image files that can be written."""
     from nispcodec.render.images import SUFFIXES

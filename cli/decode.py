@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from .choices import mesh_suffixes
+from .choices import LibraryChoice, compressions, mesh_suffixes
 from .errors import warn
 from .extras import expect_installed
 from .grid import SUFFIX, expect_fitting, write_grid
@@ -66,6 +66,11 @@ FEWER = (
     metavar="SAMPLES",
     help="Signed distances on a grid in place of a mesh, so many along the longest side: an .npz.",
 )
+@click.option(
+    "--compress",
+    type=LibraryChoice(compressions),
+    help="A smaller GLB, images as they are; draco and meshopt take the extra gltf.",
+)
 @click.option("--keep-spurious", is_flag=True, help="Keep what is recognized as noise.")
 @force_option
 @progress_options
@@ -77,6 +82,7 @@ def command(
     colors: bool,
     rebake: int | None,
     grid: int | None,
+    compress: str | None,
     force: bool,
     progress: str,
     quiet: bool,
@@ -91,11 +97,13 @@ def command(
 
     \b
     Example: nisp decode model.nisp --mesh -o out.glb
+             nisp decode model.nisp --compress meshopt -o small.glb
              nisp decode model.nisp --grid 128 -o field.npz
     """
-    from nispcodec.io.save import losses
+    from nispcodec.io.save import expect_compressible, losses
     from nispcodec.model import NispModel
 
+    expect_compressible(output, compress)
     if colors and rebake:
         raise click.UsageError("--colors and --rebake: expected one of them, found both")
     if rebake:
@@ -109,7 +117,7 @@ def command(
         return
     refuse_overwriting(_planned(loaded, output, colors, bool(rebake)), force)
     with shown("decode", progress, quiet) as listen:
-        mesh, written = _written(loaded, output, colors, rebake, how, listen)
+        mesh, written = _written(loaded, output, colors, rebake, compress, how, listen)
     if not colors:
         mesh = replace(mesh, warnings=(*mesh.warnings, *losses(mesh, output)))
     warn(mesh.warnings)
@@ -147,6 +155,7 @@ def _written(
     output: Path,
     colors: bool,
     rebake: int | None,
+    compress: str | None,
     how: dict[str, Any],
     listen: Listener,
 ) -> tuple[TexturedMesh, list[Path]]:
@@ -163,7 +172,8 @@ def _written(
         listen(Progress(stage="atlas", overall=0.5))
         mesh = baked(model, mesh, rebake)
     listen(Progress(stage="files", overall=0.9))
-    return mesh, write_mesh(mesh, output, model.color(mesh.positions) if colors else None)
+    seen = model.color(mesh.positions) if colors else None
+    return mesh, write_mesh(mesh, output, seen, compress)
 
 
 def expected(model: NispModel, resolution: int | None) -> str:

@@ -167,7 +167,7 @@ def flips(shapes: Shapes, wedges: Wedges, sides: Int64Array) -> Flips:
 
 
 def independent(down: Collapses, turned: Flips, count: int) -> tuple[Collapses, Flips]:
-    """Of operations on `count` vertices those that concern none of a better one's."""
+    """The operations on `count` vertices that concern none of a better one's."""
     gains = np.concatenate([down.gain, turned.gain])
     ranks = np.empty(len(gains), np.int64)
     ranks[np.argsort(-gains, kind="stable")] = np.arange(len(gains))
@@ -198,7 +198,7 @@ def _dots(one: Float64Array, other: Float64Array) -> Float64Array:
 
 
 def _distances(points: Float64Array, start: Float64Array, end: Float64Array) -> Float64Array:
-    """Of points (k, 3) to segments."""
+    """How far points (k, 3) are from segments."""
     along = end - start
     share = _dots(points - start, along) / np.maximum(_squares(along), 1e-300)
     nearest = start + np.clip(share, 0, 1)[:, None] * along

@@ -13,8 +13,10 @@ from nispcodec.core.arrays import Float32Array
 from nispcodec.core.asset import Material, Texture, TexturedMesh
 from nispcodec.core.atomic_write import write_atomic
 from nispcodec.core.errors import MeshError
+from nispcodec.core.extras import require
 from nispcodec.io.write.colors import untextured
 from nispcodec.io.write.glb import glb_bytes
+from nispcodec.io.write.gltf_compression import COMPRESSIONS, PACKAGES
 from nispcodec.io.write.losses import glb_losses, obj_losses, ply_losses, stl_losses
 from nispcodec.io.write.obj import obj_files
 from nispcodec.io.write.ply import ply_files
@@ -62,26 +64,46 @@ def losses(mesh: TexturedMesh, path: str | Path) -> tuple[str, ...]:
 
 
 def write_mesh(
-    mesh: TexturedMesh, path: str | Path, colors: Float32Array | None = None
+    mesh: TexturedMesh,
+    path: str | Path,
+    colors: Float32Array | None = None,
+    compress: str | None = None,
 ) -> list[Path]:
     """Write the mesh in the format of the path's suffix -> the files written, `path` last.
 
     An OBJ has its MTL and images beside it, a PLY its images; what a format cannot hold is left out
     (`losses`). Each file is written whole or not at all. `colors`
     (n, 4), sRGB-encoded in [0, 1], one for each position, take the place of UVs, materials and
-    textures. Raises MeshError for an unknown suffix, no faces, colors that do not fit or that the
-    format cannot hold; NispError when writing fails.
+    textures. `compress`, one of `COMPRESSIONS`, makes a GLB smaller. Raises MeshError for an
+    unknown suffix, no faces, colors or a compression that do not fit or that the format cannot
+    hold; NispError when writing fails, and without the package that compresses.
     """
     path = Path(path)
+    expect_compressible(path, compress)
     if not len(mesh.faces):
         raise MeshError(f"{path}: expected a mesh with faces, found none")
     written = []
     if colors is not None:
         mesh = untextured(mesh, colors)
-    for name, data in _files(mesh, path, colors).items():
+    for name, data in _files(mesh, path, colors, compress).items():
         written.append(path.with_name(name))
         write_atomic(written[-1], data)
     return written
+
+
+def expect_compressible(path: Path, compress: str | None) -> None:
+    """Raises MeshError for a compression that there is none of, or that the format cannot hold.
+
+    NispError without the package that it needs.
+    """
+    if compress is None:
+        return
+    if compress not in COMPRESSIONS:
+        raise MeshError(f"compress: expected one of {', '.join(COMPRESSIONS)}, found {compress!r}")
+    if path.suffix.lower() != ".glb":
+        raise MeshError(f"{path}: expected .glb for the compression {compress}")
+    if compress in PACKAGES:
+        require(PACKAGES[compress], extra="gltf", what_for=f"compressing by {compress}")
 
 
 def mesh_paths(
@@ -107,7 +129,9 @@ def _triangle() -> TexturedMesh:
     return replace(plain, uvs=np.eye(3)[:, :2], uv_faces=corners)
 
 
-def _files(mesh: TexturedMesh, path: Path, colors: Float32Array | None) -> dict[str, bytes]:
+def _files(
+    mesh: TexturedMesh, path: Path, colors: Float32Array | None, compress: str | None = None
+) -> dict[str, bytes]:
     """File names and bytes, that of `path` last."""
     suffix = path.suffix.lower()
     if suffix not in WRITERS:
@@ -115,6 +139,8 @@ def _files(mesh: TexturedMesh, path: Path, colors: Float32Array | None) -> dict[
         raise MeshError(f"{path}: expected a suffix of {', '.join(SUFFIXES)}, found {found}")
     if "\0" in str(path) or _CONTROL.search(path.name):
         raise MeshError(f"{str(path)!r}: expected a name without control characters")
+    if compress:
+        return {path.name: glb_bytes(mesh, colors, compress)}
     files = WRITERS[suffix](mesh, path.stem, colors)
     files[path.name] = files.pop(f"{path.stem}{suffix}")
     return files

@@ -36,6 +36,15 @@ def test_target_error(model: Path, tmp_path: Path) -> None:
     assert len(coarse.faces) < len(fine.faces)
 
 
+def test_compress(model: Path, tmp_path: Path) -> None:
+    plain = decoded(model, tmp_path / "plain.glb", "--resolution", 32)
+    small = decoded(model, tmp_path / "small.glb", "--resolution", 32, "--compress", "quantize")
+    assert small.stat().st_size < 0.7 * plain.stat().st_size
+    assert len(load_mesh(small).faces) == len(load_mesh(plain).faces)
+    other = nisp("decode", model, "-o", tmp_path / "out.obj", "--compress", "quantize")
+    refused(other, "expected .glb")
+
+
 def test_colors(model: Path, tmp_path: Path) -> None:
     out = decoded(model, tmp_path / "out.ply", "--resolution", 24, "--colors")
     visual = trimesh.load_mesh(out).visual

@@ -15,6 +15,7 @@ import pytest
 
 from nispcodec.core.asset import Material, TexturedMesh, TextureMap
 from nispcodec.io.save import write_mesh
+from nispcodec.io.write.gltf_compression import COMPRESSIONS
 from nispcodec.model import NispModel
 from tests import tiny
 
@@ -35,10 +36,14 @@ def node() -> list[str]:
 
 
 def issues(
-    node: list[str], mesh: TexturedMesh, folder: Path, colors: np.ndarray | None = None
+    node: list[str],
+    mesh: TexturedMesh,
+    folder: Path,
+    colors: np.ndarray | None = None,
+    compress: str | None = None,
 ) -> dict[str, Any]:
     """The validator's issues with the mesh written as GLB."""
-    path = write_mesh(mesh, folder / "out.glb", colors)[-1]
+    path = write_mesh(mesh, folder / "out.glb", colors, compress)[-1]
     environment = os.environ | {"NODE_PATH": str(PACKAGES)}
     run = subprocess.run(
         [*node, str(path)], capture_output=True, text=True, check=True, env=environment, timeout=60
@@ -60,6 +65,12 @@ def test_decoded_mesh_is_valid(node: list[str], tmp_path: Path) -> None:
     # Tangents are left to the viewer, as the specification allows; the validator mentions it.
     codes = {item["code"] for item in report["messages"] if item["severity"] < 2}
     assert codes <= {"MESH_PRIMITIVE_GENERATED_TANGENT_SPACE"}
+
+
+@pytest.mark.parametrize("compress", COMPRESSIONS)
+def test_compressed_meshes_are_valid(node: list[str], tmp_path: Path, compress: str) -> None:
+    report = issues(node, NispModel(tiny.document()).to_mesh(32), tmp_path, None, compress)
+    assert report["numErrors"] == report["numWarnings"] == 0, report["messages"]
 
 
 def test_mesh_without_uv_is_valid(node: list[str], tmp_path: Path) -> None:

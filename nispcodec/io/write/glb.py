@@ -13,6 +13,7 @@ from nispcodec.core.arrays import AnyArray, Float32Array, IndexArray
 from nispcodec.core.asset import Material, Texture, TexturedMesh, TextureMap
 from nispcodec.core.slots import BY_NAME, Slot
 from nispcodec.core.texture import srgb_to_linear
+from nispcodec.io.write.gltf_compression import compressed
 from nispcodec.io.write.vertices import Normals, groups, origin, shading_normals, split_vertices
 
 Json = dict[str, Any]
@@ -24,14 +25,18 @@ FILTERS = {"linear": (9729, 9987), "nearest": (9728, 9984)}
 WEBP = "EXT_texture_webp"
 
 
-def glb_bytes(mesh: TexturedMesh, colors: Float32Array | None = None) -> bytes:
+def glb_bytes(
+    mesh: TexturedMesh, colors: Float32Array | None = None, compress: str | None = None
+) -> bytes:
     """The mesh as the bytes of a GLB file: v is flipped to glTF's top-left origin.
 
     A mesh far from the origin gets its place from its node, not from its float32 coordinates.
     Colors (n, 4), sRGB-encoded RGBA of each position, become COLOR_0 in linear light. WebP images
-    are kept (EXT_texture_webp); AVIF ones become PNG, which glTF readers know.
+    are kept (EXT_texture_webp); AVIF ones become PNG, which glTF readers know. `compress` is one of
+    `gltf_compression.COMPRESSIONS`, or None.
     """
-    return _Builder(colors).build(mesh)
+    tree, binary = _Builder(colors).build(mesh)
+    return _container(*(compressed(tree, binary, compress) if compress else (tree, binary)))
 
 
 class _Builder:
@@ -44,14 +49,14 @@ class _Builder:
         self.images: dict[int, int] = {}
         self.origin = np.zeros(3)
 
-    def build(self, mesh: TexturedMesh) -> bytes:
+    def build(self, mesh: TexturedMesh) -> tuple[Json, bytes]:
         self.origin = origin(mesh)
         normals = shading_normals(mesh)
         primitives = [
             self.primitive(mesh, faces, normals, material, has_uv)
             for material, has_uv, faces in groups(mesh)
         ]
-        self.tree["scene"] = self.add("scenes", {"nodes": [0]})
+        self.tree["scene"] = self.add("scenes", {"nodes": [0], "name": mesh.name})
         node: Json = {"mesh": 0, "name": mesh.name}
         if self.origin.any():
             node["translation"] = self.origin.tolist()
@@ -59,7 +64,7 @@ class _Builder:
         self.add("meshes", {"primitives": primitives, "name": mesh.name})
         self.pad(b"\0")
         self.tree["buffers"] = [{"byteLength": len(self.buffer)}]
-        return _container(self.tree, bytes(self.buffer))
+        return self.tree, bytes(self.buffer)
 
     def add(self, kind: str, item: Json) -> int:
         """Index of the item in the tree's list of that kind; equal items are stored once."""
