@@ -53,19 +53,32 @@ const file = new Uint8Array(readFileSync(process.argv[2]));
 const parse = timed(() => parseNISP(file), 30);
 const document = parseNISP(file);
 const points = new Float32Array(3 * POINTS).map(() => Math.random() * 2 - 1);
-const spec = document.metadata.specs.get("sdf");
-const tensors = document.tensors.get("sdf");
-const layers = [...spec.hidden, 1].map((_, i) => ({ weight: tensors.get(`weight.${i}`).values, bias: tensors.get(`bias.${i}`).values }));
 const models = { wasm: new NISPModel(document, new Arithmetic("wasm")), blocks: new NISPModel(document, new Arithmetic("plain")) };
 const rate = (work) => Math.round(POINTS / timed(work).least);
-const wanted = plainLoops({ spec, layers }, points);
-const off = models.wasm.sdf(points).reduce((most, value, i) => Math.max(most, Math.abs(value - wanted[i])), 0);
-const queries = {
-  loops: rate(() => plainLoops({ spec, layers }, points)),
-  blocks: rate(() => models.blocks.sdf(points)),
-  wasm: rate(() => models.wasm.sdf(points)),
-  wasm_gradient: rate(() => gradient(models.wasm, points)),
-};
+
+/** Queries a second of a field: by plain loops, and by either kernel. */
+function fieldQueries() {
+  const spec = document.metadata.specs.get("sdf");
+  const tensors = document.tensors.get("sdf");
+  const layers = [...spec.hidden, 1].map((_, i) => ({ weight: tensors.get(`weight.${i}`).values, bias: tensors.get(`bias.${i}`).values }));
+  const wanted = plainLoops({ spec, layers }, points);
+  const off = models.wasm.sdf(points).reduce((most, value, i) => Math.max(most, Math.abs(value - wanted[i])), 0);
+  const queries = {
+    loops: rate(() => plainLoops({ spec, layers }, points)),
+    blocks: rate(() => models.blocks.sdf(points)),
+    wasm: rate(() => models.wasm.sdf(points)),
+    wasm_gradient: rate(() => gradient(models.wasm, points)),
+  };
+  return { sdf_layers: [3, ...spec.hidden, 1], sdf_points_per_second: queries, wasm_over_loops: queries.wasm / queries.loops, wasm_less_loops: off };
+}
+
+/** Queries a second of triangles, few of them: they take a search each. */
+function triangleQueries() {
+  const few = points.subarray(0, (3 * POINTS) / 20);
+  const triangles = document.parts.reduce((sum, part) => sum + part.faceCharts.length, 0);
+  return { triangles, sdf_points_per_second: { triangles: Math.round(POINTS / 20 / timed(() => models.wasm.sdf(few)).least) } };
+}
+
 const meshes = Object.fromEntries(
   [128, 256].map((resolution) => {
     let mesh;
@@ -76,11 +89,8 @@ const meshes = Object.fromEntries(
 console.log(
   JSON.stringify({
     bytes: file.length,
-    sdf_layers: [3, ...spec.hidden, 1],
     parse_seconds: { first: parse.first, least: parse.least },
-    sdf_points_per_second: queries,
-    wasm_over_loops: queries.wasm / queries.loops,
-    wasm_less_loops: off,
+    ...(document.metadata.specs.size ? fieldQueries() : triangleQueries()),
     meshes,
   }),
 );

@@ -4,6 +4,8 @@ export class ExtractionClient {
   constructor(worker) {
     this.worker = worker;
     this.next = 0;
+    /** Why nothing is answered any more; empty while the worker works. */
+    this.ended = "";
     /** @type {Map<number, {resolve: (mesh: import("./mesh.js").MeshData) => void, reject: (why: Error) => void}>} */
     this.waiting = new Map();
     worker.onmessage = ({ data: { id, mesh, error } }) => {
@@ -12,10 +14,8 @@ export class ExtractionClient {
       if (error) call?.reject(new Error(error));
       else call?.resolve(mesh);
     };
-    worker.onerror = (event) => {
-      for (const call of this.waiting.values()) call.reject(new Error(`worker: ${event.message}`));
-      this.waiting.clear();
-    };
+    // A script that a server or a security policy withholds has no message.
+    worker.onerror = (event) => this.end(`worker: expected it to run, found ${event.message ?? "that it did not start"}`);
   }
 
   /**
@@ -24,6 +24,7 @@ export class ExtractionClient {
    * @returns {Promise<import("./mesh.js").MeshData>}
    */
   extract(file, resolution) {
+    if (this.ended) return Promise.reject(new Error(this.ended));
     const id = this.next++;
     return new Promise((resolve, reject) => {
       this.waiting.set(id, { resolve, reject });
@@ -32,8 +33,14 @@ export class ExtractionClient {
   }
 
   dispose() {
+    this.end("extraction: ended");
+  }
+
+  /** @param {string} why */
+  end(why) {
+    this.ended = why;
     this.worker.terminate();
-    for (const call of this.waiting.values()) call.reject(new Error("extraction: ended"));
+    for (const call of this.waiting.values()) call.reject(new Error(why));
     this.waiting.clear();
   }
 }

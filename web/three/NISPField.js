@@ -1,4 +1,4 @@
-import { BackSide, BoxGeometry, Data3DTexture, DataTexture, FloatType, GLSL3, Mesh, NearestFilter, RGBAFormat, RedIntegerFormat, ShaderMaterial, UnsignedByteType, Vector3, Vector4 } from "three";
+import { BackSide, BoxGeometry, Data3DTexture, DataTexture, FloatType, GLSL3, Mesh, NearestFilter, RGBAFormat, RedIntegerFormat, ShaderMaterial, Texture, UnsignedByteType, Vector3, Vector4 } from "three";
 import { NISPModel } from "../evaluate/model.js";
 import { DATA_WIDTH, packField } from "../field/data.js";
 import { occupancyOf } from "../field/occupancy.js";
@@ -101,8 +101,7 @@ export class NISPFieldMaterial extends ShaderMaterial {
   }
 
   dispose() {
-    this.uniforms.nispData.value.dispose();
-    this.uniforms.nispOccupancy.value.dispose();
+    for (const { value } of Object.values(this.uniforms)) if (value instanceof Texture) value.dispose();
     super.dispose();
   }
 }

@@ -29,8 +29,9 @@ export class NISPLoader extends Loader {
     return this;
   }
 
-  /** @param {number} limit workers that extract side by side */
+  /** @param {number} limit workers that extract side by side, at least 1 */
   setWorkerLimit(limit) {
+    if (!(limit >= 1)) throw new RangeError(`worker limit: expected at least 1, found ${limit}`);
     this.limit = limit;
     return this;
   }
@@ -68,8 +69,9 @@ export class NISPLoader extends Loader {
     return groupOf(document, mesh, textures);
   }
 
-  /** The worker whose turn it is. */
+  /** The worker whose turn it is; a new one in place of one that failed. */
   client() {
+    this.clients = this.clients.filter((client) => !client.ended);
     if (this.clients.length < this.limit) this.clients.push(new ExtractionClient(makeWorker()));
     else this.clients.push(/** @type {ExtractionClient} */ (this.clients.shift()));
     return this.clients[this.clients.length - 1];

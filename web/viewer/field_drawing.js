@@ -18,6 +18,11 @@ export class FieldDrawing {
     this.grid = this.gridTexture();
   }
 
+  dispose() {
+    this.gl.deleteTexture(this.data);
+    this.gl.deleteTexture(this.grid);
+  }
+
   /** @param {Float32Array} texels @param {number} height */
   dataTexture(texels, height) {
     const { gl } = this;

@@ -22,6 +22,11 @@ export class MaterialSet {
     this.white = this.blank();
   }
 
+  dispose() {
+    for (const texture of [this.white, ...this.textures.values()]) this.gl.deleteTexture(texture);
+    for (const image of this.images) image?.close();
+  }
+
   blank() {
     const { gl } = this;
     const texture = gl.createTexture();

@@ -4,26 +4,33 @@ export class MeshDrawing {
   constructor(gl, mesh) {
     this.gl = gl;
     this.groups = mesh.groups;
+    /** @type {(WebGLBuffer|null)[]} */
+    this.buffers = [];
     this.array = gl.createVertexArray();
     gl.bindVertexArray(this.array);
     [mesh.positions, mesh.normals, mesh.uvs, mesh.charts].forEach((values, i) => {
-      gl.bindBuffer(gl.ARRAY_BUFFER, gl.createBuffer());
-      gl.bufferData(gl.ARRAY_BUFFER, values, gl.STATIC_DRAW);
+      this.buffer(gl.ARRAY_BUFFER, values);
       gl.enableVertexAttribArray(i);
       gl.vertexAttribPointer(i, [3, 3, 2, 1][i], gl.FLOAT, false, 0, 0);
     });
-    this.triangles = this.indices(mesh.indices);
-    this.sides = this.indices(sidesOf(mesh.indices));
+    this.triangles = this.buffer(gl.ELEMENT_ARRAY_BUFFER, mesh.indices);
+    this.sides = this.buffer(gl.ELEMENT_ARRAY_BUFFER, sidesOf(mesh.indices));
     gl.bindVertexArray(null);
   }
 
-  /** @param {Uint32Array} values */
-  indices(values) {
+  /** @param {number} kind @param {Float32Array|Uint32Array} values */
+  buffer(kind, values) {
     const { gl } = this;
     const buffer = gl.createBuffer();
-    gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, buffer);
-    gl.bufferData(gl.ELEMENT_ARRAY_BUFFER, values, gl.STATIC_DRAW);
+    this.buffers.push(buffer);
+    gl.bindBuffer(kind, buffer);
+    gl.bufferData(kind, values, gl.STATIC_DRAW);
     return buffer;
+  }
+
+  dispose() {
+    this.gl.deleteVertexArray(this.array);
+    for (const buffer of this.buffers) this.gl.deleteBuffer(buffer);
   }
 
   /**

@@ -28,6 +28,7 @@ export class ViewerPage {
     /** @type {NISPModel|null} */
     this.model = null;
     this.turn = 0;
+    this.opened = 0;
     this.listen();
   }
 
@@ -43,9 +44,13 @@ export class ViewerPage {
     element("wireframe").addEventListener("change", () => this.choose());
     element("resolution").addEventListener("change", () => this.guarded(() => this.remesh(null)));
     element("open").addEventListener("change", (event) => {
-      const [file] = /** @type {HTMLInputElement} */ (event.target).files ?? [];
+      const chosen = /** @type {HTMLInputElement} */ (event.target);
+      const [file] = chosen.files ?? [];
       if (file) this.drop(file);
+      // Or the same file could not be chosen twice.
+      chosen.value = "";
     });
+    element("model").addEventListener("webglcontextlost", () => say("graphics: expected it to go on, found it taken away: reload the page"));
     document.addEventListener("dragover", (event) => event.preventDefault());
     document.addEventListener("drop", (event) => {
       event.preventDefault();
@@ -56,7 +61,8 @@ export class ViewerPage {
 
   /** @param {KeyboardEvent} event */
   press(event) {
-    if (event.target instanceof HTMLInputElement && event.target.type === "range") return;
+    const { target } = event;
+    if (target instanceof HTMLSelectElement || (target instanceof HTMLInputElement && target.type === "range")) return;
     if (event.ctrlKey || event.metaKey || event.altKey) return;
     const toggled = { f: "field", w: "wireframe" }[event.key];
     const channel = CHANNELS[Number(event.key) - 1];
@@ -76,11 +82,7 @@ export class ViewerPage {
 
   /** @param {File} file */
   drop(file) {
-    return this.guarded(async () => {
-      await this.open(new Uint8Array(await file.arrayBuffer()), file.name);
-      element("other").hidden = true;
-      this.other = null;
-    });
+    return this.guarded(async () => this.open(new Uint8Array(await file.arrayBuffer()), file.name));
   }
 
   /** Runs it; says what went wrong. @param {() => Promise<void>} work */
@@ -94,13 +96,17 @@ export class ViewerPage {
     }
   }
 
-  /** @param {Uint8Array} file @param {string} name */
+  /** The last call wins; a file that is not sound changes nothing. @param {Uint8Array} file @param {string} name */
   async open(file, name) {
+    const turn = ++this.opened;
     const started = performance.now();
     const parsed = parseNISP(file);
     const parseTime = performance.now() - started;
+    const images = await decodeImages(parsed.images);
+    if (turn !== this.opened) return;
+    this.closeOriginal();
     this.model = new NISPModel(parsed);
-    this.pane.renderer.setMaterials(parsed.metadata.materials, await decodeImages(parsed.images));
+    this.pane.renderer.setMaterials(parsed.metadata.materials, images);
     const widths = [...parsed.metadata.specs.values()].flatMap((spec) => spec.hidden);
     const traceable = widths.length > 0 && Math.max(...widths) <= WIDEST_FIELD;
     input("field").disabled = !traceable;
@@ -124,11 +130,21 @@ export class ViewerPage {
     const resolution = Number(input("resolution").value);
     element("cells").textContent = String(resolution);
     const started = performance.now();
-    const mesh = await /** @type {ExtractionClient} */ (this.client).extract(file, resolution);
-    if (turn !== this.turn) return;
+    const mesh = await this.extracted(turn, file, resolution);
+    if (!mesh || turn !== this.turn) return;
     showRows("mesh", meshRows(mesh, performance.now() - started));
     this.pane.renderer.setMesh(mesh);
     this.choose();
+  }
+
+  /** Nothing where another call came in between, which ends the worker. @param {number} turn @param {Uint8Array|null} file @param {number} resolution */
+  async extracted(turn, file, resolution) {
+    try {
+      return await /** @type {ExtractionClient} */ (this.client).extract(file, resolution);
+    } catch (why) {
+      if (turn === this.turn) throw why;
+      return null;
+    }
   }
 
   /** The mesh that the file was made from, beside it. @param {unknown} data as view.py writes it */
@@ -139,6 +155,12 @@ export class ViewerPage {
     this.other.renderer.setMaterials(original.materials, await decodeImages(original.images));
     this.other.renderer.setMesh(original.mesh);
     this.choose();
+  }
+
+  closeOriginal() {
+    element("other").hidden = true;
+    this.other?.dispose();
+    this.other = null;
   }
 
   /**

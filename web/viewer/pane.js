@@ -21,7 +21,14 @@ export class Pane {
     // Both follow from how long the last ones took.
     this.scale = 0.3;
     this.rows = 32;
-    new ResizeObserver(() => this.changed()).observe(canvas);
+    this.observer = new ResizeObserver(() => this.changed());
+    this.observer.observe(canvas);
+  }
+
+  dispose() {
+    this.observer.disconnect();
+    cancelAnimationFrame(this.pending);
+    this.renderer.dispose();
   }
 
   /** @param {Partial<import("./renderer.js").Look>} look */

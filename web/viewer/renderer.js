@@ -34,8 +34,14 @@ export class Renderer {
 
   /** @param {import("../decoder/metadata.js").Material[]} materials @param {(ImageBitmap|null)[]} images */
   setMaterials(materials, images) {
+    for (const old of [this.materials, this.field, this.mesh]) old?.dispose();
     this.materials = new MaterialSet(this.gl, materials, images);
     this.field = this.mesh = null;
+  }
+
+  /** Gives back all that the graphics processor holds. */
+  dispose() {
+    this.gl.getExtension("WEBGL_lose_context")?.loseContext();
   }
 
   /** @param {import("../evaluate/model.js").NISPModel} model */
@@ -45,6 +51,7 @@ export class Renderer {
 
   /** @param {import("../extract/mesh.js").MeshData} mesh */
   setMesh(mesh) {
+    this.mesh?.dispose();
     this.mesh = new MeshDrawing(this.gl, mesh);
   }
 
@@ -212,6 +219,7 @@ export class Renderer {
     this.resolve(false);
     const pixels = new Uint8Array(4 * size * size);
     gl.readPixels(0, 0, size, size, gl.RGBA, gl.UNSIGNED_BYTE, pixels);
+    target.dispose();
     this.restart();
     const row = 4 * size;
     return Uint8Array.from(pixels, (_, i) => pixels[(size - 1 - Math.floor(i / row)) * row + (i % row)]);

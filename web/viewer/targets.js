@@ -11,6 +11,12 @@ export class Target {
     this.depth = depth ? gl.createRenderbuffer() : null;
   }
 
+  dispose() {
+    this.gl.deleteFramebuffer(this.framebuffer);
+    this.gl.deleteRenderbuffer(this.depth);
+    for (const texture of this.textures) this.gl.deleteTexture(texture);
+  }
+
   /** @param {number} width @param {number} height */
   bind(width, height) {
     const { gl } = this;
