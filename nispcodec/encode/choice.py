@@ -85,8 +85,8 @@ class Choice:
         elif target:
             found = self._form.of_size(size)
         else:
-            found = self._form.best(errors.distance, most)
-        if found is None or found.errors.made_up.share > self._forms.notable_far:
+            found = self._form.best(min(errors.distance, self._nearest), most)
+        if found is None or not self._forms.is_sound(found.errors):
             return None
         meshes = replace(field, field=None, meshes=found.parts)
         fits = own_bytes(meshes) <= most
@@ -109,7 +109,8 @@ class Choice:
             return self._form.within(self._config.target_error, errors.uv)
         if self._form.estimate(errors.distance, size, size) >= size:
             return None
-        return self._form.best(errors.distance, size)
+        found = self._form.best(min(errors.distance, self._nearest), size)
+        return found if found.size < size else self._form.best(errors.distance, size)
 
     def _wanted(self, document: Callable[[tuple[MeshPart, ...]], Document]) -> Candidate:
         config = self._config
@@ -120,9 +121,8 @@ class Choice:
                     f"target error: expected {config.target_error:g}, found no mesh as near"
                 )
             return found
-        nearest = self._tuning.training.budgets[config.preset].mesh
         if not config.target_size:
-            return self._form.best(nearest, self._field_bytes or math.inf)
+            return self._form.best(self._nearest, self._field_bytes or math.inf)
         fewest = self._form.fewest()
         besides = own_bytes(document(fewest.parts)) - fewest.size
         found = self._form.of_size(config.target_size - besides)
@@ -132,6 +132,11 @@ class Choice:
                 f"triangles, found {config.target_size:,.0f}"
             )
         return found
+
+    @property
+    def _nearest(self) -> float:
+        """The mean distance that triangles are to keep within, where bytes allow it."""
+        return self._tuning.training.budgets[self._config.preset].mesh
 
     @property
     def _open(self) -> bool:

@@ -12,6 +12,7 @@ from nispcodec.core.errors import NispError
 from nispcodec.dataset.config import SamplingConfig
 from nispcodec.geometry.config import GeometryConfig
 from nispcodec.simplify.config import LadderConfig
+from nispcodec.simplify.errors import Errors
 from nispcodec.train.config import TrainConfig
 
 if TYPE_CHECKING:
@@ -168,6 +169,10 @@ class FormConfig:
     least_bits: int = 5
     size_trials: int = 7
     ladder: LadderConfig = field(default_factory=LadderConfig)
+
+    def is_sound(self, errors: Errors) -> bool:
+        """Whether so little is made up and lost that nobody need be warned."""
+        return max(errors.made_up.share, errors.lost.share) <= self.notable_far
 
 
 @dataclass(frozen=True)

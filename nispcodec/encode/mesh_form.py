@@ -80,11 +80,13 @@ class MeshForm:
     def best(self, most_distance: float, most_bytes: float) -> Candidate:
         """The candidate with the least sum of the logarithms of bytes and errors, as weighted.
 
-        Of those within both limits, if any, else of those within the limit of the distance.
+        Of those that make up and lose no notable surface, if any; of these, of those within the
+        limit of the distance, if any; and of these of those within the limit of the bytes.
         """
         self._progress(Progress(stage="triangles"))
         found = [*self._rungs.rising(most_bytes), *self._whole(most_bytes)]
-        near = [each for each in found if each.errors.distance <= most_distance] or found
+        sound = [each for each in found if self._config.is_sound(each.errors)] or found
+        near = [each for each in sound if each.errors.distance <= most_distance] or sound
         within = [each for each in near if each.size <= most_bytes] or near
         return min(within, key=self._cost)
 

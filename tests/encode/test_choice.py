@@ -90,6 +90,17 @@ def test_triangles_that_are_smaller_and_no_worse_are_taken() -> None:
     assert (chosen.errors, chosen.other_bytes) == (EXACT, SIZE)
 
 
+def test_triangles_in_place_of_a_poor_field_are_as_near_as_the_preset_says() -> None:
+    preset = Tuning().training.budgets["balanced"].mesh
+    form = Told(10.0, best=candidate())
+    choice(form).after_fit(FIELD, OFF)
+    assert form.asked == [("best", preset, float(SIZE))]
+    small = replace(OFF, distance=preset / 2)
+    form.asked.clear()
+    choice(form).after_fit(FIELD, small)
+    assert form.asked == [("best", preset / 2, float(SIZE))]
+
+
 def test_triangles_are_worth_more_bytes_where_the_field_makes_up_surface() -> None:
     webbed = replace(OFF, made_up=FarPoints(1000, np.zeros((50, 3)), np.zeros(50, np.int32)))
     dear, form = Tuning(forms=FormConfig(worth=1e3)), Told(10.0 * SIZE, best=candidate())

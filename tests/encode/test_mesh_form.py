@@ -55,6 +55,12 @@ def test_the_best_stays_within_both_limits(ball: MeshForm) -> None:
     assert min(near.size, free.size) >= small.size
 
 
+def test_the_best_makes_up_and_loses_nothing_notable(ball: MeshForm) -> None:
+    coarse = ball.fewest()
+    assert not CONFIG.is_sound(coarse.errors)
+    assert CONFIG.is_sound(ball.best(1.0, math.inf).errors)
+
+
 def test_a_candidate_of_a_size_is_the_nearest_found(ball: MeshForm) -> None:
     sizes = [ball.of_size(most).size for most in (400, 600, 1200)]
     distances = [ball.of_size(most).errors.distance for most in (400, 600, 1200)]
