@@ -31,14 +31,14 @@ class ImportNISP(RunsNisp, bpy.types.Operator, ImportHelper):
     filter_glob: bpy.props.StringProperty(default="*.nisp", options={"HIDDEN"})
     resolution: bpy.props.IntProperty(
         name="Resolution",
-        description="Cells along the edge of the cube that a field is extracted on; 0: enough",
+        description="Cells along the edge of the cube that a field is extracted on; 0: what it takes",
         default=0,
         min=0,
         max=2048,
     )
     faces: bpy.props.IntProperty(
         name="Faces",
-        description="At most so many triangles; 0: as many as come",
+        description="At most so many triangles; 0: as many as the eye needs",
         default=0,
         min=0,
     )
