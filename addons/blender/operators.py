@@ -31,7 +31,7 @@ class ImportNISP(RunsNisp, bpy.types.Operator, ImportHelper):
     filter_glob: bpy.props.StringProperty(default="*.nisp", options={"HIDDEN"})
     resolution: bpy.props.IntProperty(
         name="Resolution",
-        description="Cells along the edge of the cube that a field is extracted on; 0: what it takes",
+        description="Cells along the edge of the cube that fields are extracted on; 0: as it takes",
         default=0,
         min=0,
         max=2048,
