@@ -3,8 +3,9 @@
     python -m benchmarks.status [--markdown]
 
 The age is counted in commits that touch what the result follows, by the table in
-`benchmarks.report.committed`; a result of several commits is as old as the oldest. It measures
-nothing and ends with 0 whatever it finds.
+`benchmarks.report.committed`; a result of several commits is as old as the oldest. Last come the
+numbers that were asked for and that no result has. It measures nothing and ends with 0 whatever it
+finds.
 """
 
 from __future__ import annotations
@@ -21,10 +22,15 @@ from benchmarks.measuring.result_file import Record, commits_of, read_result
 from benchmarks.measuring.target import Asked
 from benchmarks.report.committed import RESULTS, CommittedResult
 from benchmarks.report.markdown import columns, table
+from benchmarks.report.unmeasured import UNMEASURED
+
+Shown = Callable[[Sequence[str], Sequence[Sequence[str]]], str]
+"""A head and rows as text."""
 
 FOLDER = "benchmarks/results"
 AGES = ("result", "age, commits", "measured at", "by python -m")
 MISSED = ("result", "of", "target", "asked", "measured")
+WANTED = ("asked for, measured by no command", "asked")
 
 
 @dataclass(frozen=True)
@@ -81,14 +87,17 @@ def _missed(file: str, asked: Asked) -> list[str]:
     return [file, asked.name, asked.target.name, asked.target.asked, found]
 
 
-def lines(there: Sequence[str], show: Callable[[Sequence[str], list[list[str]]], str]) -> str:
-    """Both tables, of the results whose files are there."""
+def lines(
+    there: Sequence[str], show: Callable[[Sequence[str], Sequence[Sequence[str]]], str]
+) -> str:
+    """All tables: ages and targets of the results whose files are there, and what no result has."""
     present = [result for result in RESULTS if result.file in there]
     absent = [result.command for result in RESULTS if result.file not in there]
     strangers = set(there) - {name for each in RESULTS for name in (each.file, *each.beside)}
     missed = [line for result in present for line in unmet(result)]
     parts = [show(AGES, [age_row(result) for result in present])]
     parts.append(show(MISSED, missed) if missed else "No target is missed.\n")
+    parts.append(show(WANTED, UNMEASURED))
     parts += [f"Not measured yet: {name}\n" for name in absent]
     parts += [f"Of no command in benchmarks/report/committed.py: {each}\n" for each in strangers]
     return "\n".join(parts)

@@ -1,16 +1,17 @@
-"""`.nisp` against simplify + Draco at equal error, from what other commands have measured.
+"""`.nisp` against the best of other codecs at equal error, from what other commands have measured.
 
     python -m benchmarks.headline.main_job --assets ../shared/assets
     python -m benchmarks.headline.duel
 
-The rival's points are those that the last `make bench` left in `results/bench.csv`. Its bytes are
-the fewest of all its settings whose mean distance is no larger than ours, and of those whose mean
-UV error is no larger either.
+The rivals' points are those that `python -m benchmarks.rate_distortion.rivals` has measured. Their
+bytes are the fewest of all settings whose mean distance is no larger than ours, and of those whose
+mean UV error is no larger either; and where the front of the latter, straight between settings in
+logarithms, has our distance. Their color is the best of all settings with no more bytes.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -21,20 +22,25 @@ from benchmarks.headline.main_job import RESULTS as MAIN_JOB
 from benchmarks.measuring.machine import commit
 from benchmarks.measuring.result_file import Record, read_result, write_result
 from benchmarks.measuring.target import Asked, Target
-from benchmarks.rate_distortion.rows import Row, from_csv, row
-from benchmarks.rate_distortion.summary import OURS, RIVALS, duels
+from benchmarks.rate_distortion.rows import Row, from_csv, pairs, row
+from benchmarks.rate_distortion.summary import OURS, bytes_between, duels, rivals
 
 PRECISE = ("spot", "food_apple_01", "chess_king", "tea_set_01")
-POINTS = Path("benchmarks/results/bench.csv")
 DEMANDS = ("distance", "distance and uv")
+BETWEEN = "between settings"
+POINTS = Path("benchmarks/results/rivals.csv")
 RESULTS = Path("benchmarks/results/duel.json")
 
 TARGETS = [
-    Target("share of bytes, four", ("distance and uv", "four"), 0.38),
-    Target("share of bytes, all", ("distance and uv", "all"), 0.5),
+    Target("bytes, ours / theirs, four", ("means", BETWEEN, "four"), 0.38),
+    Target("bytes, ours / theirs, all", ("means", BETWEEN, "all"), 0.5),
+    Target("bytes, ours / theirs, worst", ("means", BETWEEN, "worst"), 1.03),
+    Target("color above the rival's, mean, dB", ("color", "mean"), 2, at_least=True),
+    Target("color above the rival's, worst, dB", ("color", "worst"), 0, at_least=True),
 ]
 
 Duel = dict[str, Any]
+Mean = Callable[[Sequence[float]], float]
 
 
 def our_rows(records: Mapping[str, Any]) -> list[Row]:
@@ -54,25 +60,73 @@ def our_rows(records: Mapping[str, Any]) -> list[Row]:
 
 
 def duel(rows: Sequence[Row], asset: str) -> Duel:
-    """Our bytes, the rival's for each demand, and our share of them."""
+    """Our bytes and errors, the rivals' bytes for each demand, our share of them; and colors."""
     (found,) = duels(rows, asset)
-    rivals = {name: found["rival_bytes"][name] for name in DEMANDS}
-    shares = {name: found["bytes"] / size if size else None for name, size in rivals.items()}
     ours = next(each for each in rows if each["asset"] == asset and each["codec"] == OURS)
-    errors = {name: ours[name] for name in ("distance", "uv", "uv_median")}
-    return {"bytes": found["bytes"], **errors, "rival_bytes": rivals, "share": shares}
+    theirs = rivals(rows, asset, "distance")
+    sizes = {name: found["rival_bytes"][name] for name in DEMANDS} | {
+        BETWEEN: between(theirs, ours)
+    }
+    shares = {name: found["bytes"] / size if size else None for name, size in sizes.items()}
+    errors = {name: ours[name] for name in ("distance", "uv", "uv_median", "color_psnr")}
+    best = best_color(theirs, ours["bytes"])
+    above = None if best is None else ours["color_psnr"] - best
+    return {
+        "bytes": found["bytes"],
+        **errors,
+        "rival_bytes": sizes,
+        "share": shares,
+        "rival_color_psnr": best,
+        "color_above": above,
+    }
+
+
+def between(theirs: Sequence[Row], ours: Row) -> int | None:
+    """Bytes where the front of the settings with no larger UV error has our distance."""
+    good = [each for each in theirs if each["uv"] is not None and each["uv"] <= ours["uv"]]
+    return bytes_between(pairs(good, "distance"), ours["distance"])
+
+
+def best_color(theirs: Sequence[Row], size: int) -> float | None:
+    """PSNR of the base color in dB, the best of all settings of so many bytes."""
+    small = (each["color_psnr"] for each in theirs if each["bytes"] <= size)
+    return max((color for color in small if color is not None), default=None)
 
 
 def mean_share(table: Mapping[str, Duel], assets: Sequence[str], demand: str) -> float | None:
     """Geometric mean over the assets where the rival has a setting as good."""
     shares = [table[name]["share"][demand] for name in assets if name in table]
-    known = [share for share in shares if share is not None]
-    return float(np.exp(np.mean(np.log(known)))) if known else None
+    return over([share for share in shares if share is not None], geometric_mean)
+
+
+def geometric_mean(values: Sequence[float]) -> float:
+    """The geometric mean of numbers above 0."""
+    return float(np.exp(np.mean(np.log(values))))
+
+
+def over(values: Sequence[float], mean: Mean) -> float | None:
+    """A mean, or None of nothing."""
+    return mean(values) if values else None
+
+
+def summarized(table: Mapping[str, Duel]) -> Record:
+    """Means of our share for each demand, the worst of them, and what our colors are above."""
+    means = {
+        demand: {
+            "four": mean_share(table, PRECISE, demand),
+            "all": mean_share(table, list(table), demand),
+            "worst": over([s for e in table.values() if (s := e["share"][demand])], max),
+        }
+        for demand in (*DEMANDS, BETWEEN)
+    }
+    above = [each["color_above"] for each in table.values() if each["color_above"] is not None]
+    color = {"mean": over(above, lambda values: float(np.mean(values))), "worst": over(above, min)}
+    return {"means": means, "color": color}
 
 
 def asked(results: Record) -> Iterator[Asked]:
-    """The targets of the geometric means in a result file."""
-    yield from (Asked("geometric means", target, results["means"]) for target in TARGETS)
+    """The targets of the means in a result file."""
+    yield from (Asked("all assets", target, results) for target in TARGETS)
 
 
 @click.command()
@@ -81,21 +135,13 @@ def asked(results: Record) -> Iterator[Asked]:
 def main(points: Path, output: Path) -> None:
     """Print the table and write it as JSON."""
     records = read_result(MAIN_JOB)["assets"]
-    everyone = from_csv(points.read_text(encoding="utf-8"))
-    rivals = [each for each in everyone if each["codec"] in RIVALS]
-    rows = [*rivals, *our_rows(records)]
+    rows = [*from_csv(points.read_text(encoding="utf-8")), *our_rows(records)]
     table = {name: duel(rows, name) for name in records}
-    means = {
-        demand: {
-            "four": mean_share(table, PRECISE, demand),
-            "all": mean_share(table, list(table), demand),
-        }
-        for demand in DEMANDS
-    }
+    results = {"commit": commit(), "assets": table, **summarized(table)}
     for name, found in table.items():
-        click.echo(f"{name:<18}{found['bytes']:>8,}  {found['rival_bytes']}  {found['share']}")
-    click.echo(f"geometric means {means}")
-    results = {"commit": commit(), "assets": table, "means": means}
+        click.echo(f"{name:<24}{found['bytes']:>8,}  {found['rival_bytes']}  {found['share']}")
+        click.echo(f"{'':<24}color {found['color_psnr']}, rival {found['rival_color_psnr']}")
+    click.echo(f"geometric means {results['means']}, color above {results['color']}")
     write_result(output, results)
     for each in asked(results):
         click.echo(each.line())

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import exp, log
+from math import log
 
 Pair = tuple[float, float]
 
@@ -28,18 +28,3 @@ def _below(pairs: Sequence[Pair], first: int, middle: int, last: int) -> bool:
     places = (pairs[first], pairs[middle], pairs[last])
     (x0, y0), (x1, y1), (x2, y2) = ((log(x), log(y)) for x, y in places)
     return (y1 - y0) * (x2 - x0) < (y2 - y0) * (x1 - x0)
-
-
-def bytes_on_hull(pairs: Sequence[Pair], error: float) -> int | None:
-    """Bytes at which the hull of (bytes, error) pairs, straight in logarithms, has fallen to this.
-
-    The fewest of all where they suffice, None where none do.
-    """
-    hull = [pairs[index] for index in lower_hull(pairs)]
-    enough = next((index for index, pair in enumerate(hull) if pair[1] <= error), None)
-    if enough is None:
-        return None
-    if enough == 0:
-        return round(hull[0][0])
-    (x0, y0), (x1, y1) = ((log(size), log(value)) for size, value in hull[enough - 1 : enough + 1])
-    return round(exp(x0 + (x1 - x0) * (log(error) - y0) / (y1 - y0)))

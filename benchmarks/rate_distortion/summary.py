@@ -94,6 +94,19 @@ def bytes_at(points: Sequence[tuple[float, float]], level: float) -> int | None:
     return next((int(size) for size, error in front(points) if error <= level), None)
 
 
+def bytes_between(points: Sequence[tuple[float, float]], level: float) -> int | None:
+    """Bytes at which the front of (bytes, error), straight in logarithms, has fallen to an error.
+
+    Files between two settings can be had, by another count of faces. The fewest bytes of all where
+    they suffice, None where none do.
+    """
+    best = front(points)
+    if not len(best) or level < best[-1, 1]:
+        return None
+    sizes, errors = np.log(best[::-1]).T
+    return round(float(np.exp(np.interp(np.log(level), errors, sizes))))
+
+
 def costs(rows: Sequence[Row], codec: str) -> dict[str, float | None]:
     """Median time and memory over all points of a codec."""
     alike = [row for row in rows if row["codec"] == codec and row["problem"] is None]

@@ -59,7 +59,7 @@ RESULTS = (
     CommittedResult("main_job.json", "benchmarks.headline.main_job", (*ROUND_TRIP, *RENDER)),
     CommittedResult("encode_time.json", "benchmarks.headline.encode_time", ROUND_TRIP),
     CommittedResult(
-        "duel.json", "benchmarks.headline.duel", made_from=("main_job.json", "bench.json")
+        "duel.json", "benchmarks.headline.duel", made_from=("main_job.json", "rivals.json")
     ),
     CommittedResult("pictures.json", "benchmarks.headline.pictures", (*ROUND_TRIP, *RENDER)),
     CommittedResult(
@@ -69,7 +69,12 @@ RESULTS = (
         beside=("bench.csv",),
         asks="benchmarks.rate_distortion.command",
     ),
-    CommittedResult("rivals.json", "benchmarks.rate_distortion.rivals", (*METRICS, *RIVALS)),
+    CommittedResult(
+        "rivals.json",
+        "benchmarks.rate_distortion.rivals",
+        (*METRICS, *RIVALS),
+        beside=("rivals.csv",),
+    ),
     CommittedResult(
         "paper.json",
         "benchmarks.paper",

@@ -16,7 +16,7 @@ from typing import Any
 
 import click
 
-from benchmarks.headline.duel import PRECISE
+from benchmarks.headline.duel import BETWEEN, DEMANDS, PRECISE
 from benchmarks.headline.duel import RESULTS as DUEL
 from benchmarks.headline.main_job import RESULTS
 from benchmarks.measuring.result_file import Record, commits_of, read_result, write_result
@@ -36,7 +36,8 @@ HEAD = (
 PEERS_BEGIN = "<!-- peers: python -m benchmarks.report.document -->\n"
 PEERS_END = "<!-- end of peers -->\n"
 PEERS_HEAD = (
-    "kB, no textures", "`.nisp`", "simplify + Draco, as near", "and UVs as near", "ours / theirs",
+    "kB, no textures", "`.nisp`", "simplify + Draco, as near", "and UVs as near",
+    "between settings", "ours / theirs", "color, dB",
 )  # fmt: skip
 CURVES = {"distance": "delta rate, distance", "uv": "delta rate, UV"}
 CROSSING_BEGIN = "<!-- crossover: python -m benchmarks.report.document -->\n"
@@ -78,14 +79,14 @@ def measured() -> str:
 
 def shortened() -> str:
     """What the README shows of every asset."""
-    measured_assets = read_result(RESULTS)["assets"]
-    duels = read_result(DUEL)["assets"]
+    results, duels = read_result(RESULTS), read_result(DUEL)["assets"]
     rows = []
-    for name, record in sorted(measured_assets.items()):
+    for name, record in sorted(results["assets"].items()):
         _, _, mesh, ours, seconds, distance, *_ = row(name, record)
-        theirs = kilobytes(duels[name]["rival_bytes"]["distance and uv"])
-        rows.append([name, mesh, ours, f"{theirs} kB", distance, seconds])
-    return table(SHORT_HEAD, rows)
+        size = duels[name]["rival_bytes"]["distance and uv"]
+        theirs = kilobytes(size) if size is None else f"{kilobytes(size)} kB"
+        rows.append([name, mesh, ours, theirs, distance, seconds])
+    return table(SHORT_HEAD, rows) + f"\nMeasured at {commits(results)}.\n"
 
 
 def compared() -> str:
@@ -97,14 +98,14 @@ def compared() -> str:
     lines = [
         [
             *duel_cells(name, duel),
-            *(percentage(rates[name][error]) for error in CURVES),
+            *(percentage(rates.get(name, {}).get(error)) for error in CURVES),
             *(kilobytes(size_of(rows, name, title)) for title in OTHERS),
         ]
         for name, duel in sorted(found["assets"].items())
     ]
     head = [*PEERS_HEAD, *CURVES.values(), *OTHERS]
     when = f"Delta rates and all other codecs were measured at {commits(read_result(BENCH))}.\n"
-    return table(head, lines) + means_line(found["means"]["distance and uv"]) + when
+    return table(head, lines) + means_line(found) + when
 
 
 def crossing() -> str:
@@ -128,19 +129,26 @@ def commits(results: Record) -> str:
     return "commit " + ", ".join(sorted(set(commits_of(results))))
 
 
-def means_line(means: dict[str, float]) -> str:
-    """The geometric means of our share."""
+def means_line(found: Record) -> str:
+    """The means of our share, and of the colors."""
+    means, color = found["means"][BETWEEN], found["color"]
     return (
-        f"\nOurs / theirs in the geometric mean: {means['four']:.2f} over "
-        f"{', '.join(PRECISE)}; {means['all']:.2f} over all.\n"
+        f"\nOurs / theirs in the geometric mean: {means['four']:.2f} over {', '.join(PRECISE)}; "
+        f"{means['all']:.2f} over all that can be compared; the worst is {means['worst']:.2f}. "
+        f"Color: {color['mean']:+.1f} dB in the mean, {color['worst']:+.1f} dB the worst.\n"
     )
 
 
 def duel_cells(name: str, duel: dict[str, Any]) -> list[str]:
     """One asset: sizes in kB, a dash where the rival is never as good."""
-    rival, share = duel["rival_bytes"], duel["share"]["distance and uv"]
-    sizes = [duel["bytes"], rival["distance"], rival["distance and uv"]]
-    return [name, *map(kilobytes, sizes), "–" if share is None else f"{share:.2f}"]
+    sizes = [duel["bytes"], *(duel["rival_bytes"][demand] for demand in (*DEMANDS, BETWEEN))]
+    share, color = duel["share"][BETWEEN], duel["color_above"]
+    return [
+        name,
+        *map(kilobytes, sizes),
+        "–" if share is None else f"{share:.2f}",
+        "–" if color is None else f"{color:+.1f}",
+    ]
 
 
 def percentage(share: float | None) -> str:

@@ -23,21 +23,17 @@ def test_only_what_stands_between_the_markers_changes() -> None:
 
 
 def test_a_line_has_a_dash_where_the_rival_is_never_as_good() -> None:
-    duel = {
-        "bytes": 9500,
-        "rival_bytes": {"distance": 4000, "distance and uv": None},
-        "share": {"distance": 2.375, "distance and uv": None},
-    }
-    assert duel_cells("a", duel) == ["a", "9.5", "4.0", "–", "–"]
+    sizes = {"distance": 4000, "distance and uv": None, "between settings": None}
+    shares = {"distance": 2.375, "distance and uv": None, "between settings": None}
+    duel = {"bytes": 9500, "rival_bytes": sizes, "share": shares, "color_above": None}
+    assert duel_cells("a", duel) == ["a", "9.5", "4.0", "–", "–", "–", "–"]
 
 
-def test_a_line_says_what_share_of_the_rival_we_are() -> None:
-    duel = {
-        "bytes": 9500,
-        "rival_bytes": {"distance": 19000, "distance and uv": 19000},
-        "share": {"distance": 0.5, "distance and uv": 0.5},
-    }
-    assert duel_cells("a", duel) == ["a", "9.5", "19.0", "19.0", "0.50"]
+def test_a_line_says_what_share_of_the_rival_we_are_and_whose_color_is_better() -> None:
+    sizes = {"distance": 19000, "distance and uv": 20000, "between settings": 19000}
+    shares = {"distance": 0.5, "distance and uv": 0.48, "between settings": 0.5}
+    duel = {"bytes": 9500, "rival_bytes": sizes, "share": shares, "color_above": -1.25}
+    assert duel_cells("a", duel) == ["a", "9.5", "19.0", "20.0", "19.0", "0.50", "-1.2"]
 
 
 def test_other_codecs_are_shown_where_they_are_measured() -> None:

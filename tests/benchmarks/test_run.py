@@ -12,7 +12,7 @@ from benchmarks.assets.source import Source
 from benchmarks.codecs import Unavailable
 from benchmarks.measuring.isolated import WorkFailed, isolated
 from benchmarks.rate_distortion import runner
-from benchmarks.rate_distortion.hull import bytes_on_hull, lower_hull
+from benchmarks.rate_distortion.hull import lower_hull
 from benchmarks.rate_distortion.runner import Clock, Job, plan, run
 from benchmarks.rate_distortion.store import Store
 
@@ -45,13 +45,6 @@ def test_an_exception_and_a_crash_are_told_apart_from_the_rest() -> None:
 def test_hull_keeps_what_no_mix_of_others_beats() -> None:
     pairs = [(100, 1.0), (1000, 0.1), (300, 0.9), (320, 0.2), (2000, 0.1), (90, 2.0)]
     assert lower_hull(pairs) == [5, 0, 3, 1]
-
-
-def test_bytes_on_the_hull_lie_between_its_settings() -> None:
-    pairs = [(100, 1e-2), (10_000, 1e-4), (5000, 9e-3)]
-    assert bytes_on_hull(pairs, 1e-3) == 1000
-    assert bytes_on_hull(pairs, 2e-2) == 100
-    assert bytes_on_hull(pairs, 1e-5) is None
 
 
 def test_finished_points_are_not_run_again_and_failures_are(tmp_path: Path) -> None:

@@ -111,22 +111,23 @@ def test_missed_targets_and_unread_ones_are_told(
     tmp_path: Path, commit: Commit, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     duel = CommittedResult("duel.json", "benchmarks.headline.duel", ("train",))
-    other = CommittedResult("other.json", "benchmarks.headline.duel", ("train",))
+    other = CommittedResult("other.json", "benchmarks.headline.main_job", ("train",))
     absent = CommittedResult("absent.json", "benchmarks.absent", ("train",))
     monkeypatch.setattr(status, "RESULTS", (duel, other, absent))
     folder = tmp_path / status.FOLDER
-    found = {"four": 0.4, "all": 0.4}
-    write_result(folder / "duel.json", {"means": {"distance and uv": found}, "commit": "abc"})
+    means = {"between settings": {"four": 0.4, "all": 0.4, "worst": 1.0}}
+    color = {"mean": 2.5, "worst": 0.5}
+    write_result(folder / "duel.json", {"means": means, "color": color, "commit": "abc"})
     write_result(folder / "other.json", {"commit": "abc"})
     write_result(folder / "stranger.json", {})
     commit("train/a")
     done = CliRunner().invoke(status.main, ["--markdown"])
     assert done.exit_code == 0
-    head = "| duel.json | geometric means | share of bytes, four | <= 0.38 | 0.4 |"
-    assert head in done.output
-    assert "share of bytes, all" not in done.output
-    assert "| other.json |  | not read: KeyError: 'means' |  |  |" in done.output
+    assert "| duel.json | all assets | bytes, ours / theirs, four | <= 0.38 | 0.4 |" in done.output
+    assert "| duel.json | all assets | bytes, ours / theirs, all |" not in done.output
+    assert "| other.json |  | not read: KeyError: 'assets' |  |  |" in done.output
     assert "Not measured yet: benchmarks.absent" in done.output
+    assert "| asked for, measured by no command | asked |" in done.output
     assert "stranger.json" in done.output
     assert "| --- |" not in CliRunner().invoke(status.main).output
 

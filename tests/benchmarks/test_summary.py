@@ -7,7 +7,7 @@ import pytest
 
 from benchmarks.rate_distortion.bjontegaard import delta_rate, front
 from benchmarks.rate_distortion.rows import NAMES, as_csv, from_csv, row
-from benchmarks.rate_distortion.summary import bytes_at, duels, summarized
+from benchmarks.rate_distortion.summary import bytes_at, bytes_between, duels, summarized
 from nispcodec.core.arrays import Float64Array
 
 ERRORS = np.geomspace(1e-2, 1e-4, 8)
@@ -40,6 +40,15 @@ def test_front_drops_what_is_not_worth_its_bytes() -> None:
     assert front([(3, 0.2), (1, 1.0), (2, 1.5), (4, 0.2)]).tolist() == [[1, 1.0], [3, 0.2]]
     assert bytes_at([(100, 1e-2), (200, 1e-3), (150, 2e-3)], 5e-3) == 150
     assert bytes_at([(100, 1e-2)], 5e-3) is None
+
+
+def test_bytes_between_two_settings_are_on_the_line_of_their_logarithms() -> None:
+    points = [(100, 1e-2), (10_000, 1e-4), (5000, 9e-3)]
+    assert 100 < (bytes_between(points, 9.5e-3) or 0) < 5000
+    assert bytes_between(points[:2], 1e-3) == 1000
+    assert bytes_between(points, 2e-2) == 100
+    assert bytes_between(points, 1e-5) is None
+    assert bytes_between([], 1) is None
 
 
 def record(codec: str, size: int, distance: float, uv: float) -> dict[str, Any]:

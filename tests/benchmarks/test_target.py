@@ -41,9 +41,9 @@ def test_every_record_is_asked_for_its_own_targets() -> None:
 
 
 RESULTS: list[tuple[ModuleType, Record, int]] = [
-    (main_job, {"assets": {"boombox": {}}}, 6),
+    (main_job, {"assets": {"boombox": {}}}, 7),
     (pictures, {"assets": {"boombox": {}}}, 2),
-    (duel, {"means": {}}, 2),
+    (duel, {"means": {}}, 5),
     (command, {"summary": {}}, 1),
     (decoder, {"queries_8x64": {"plain": {}}, "assets": {"boombox": {}}}, 3 + 14),
     (format, {"files": {"10 kB": {"materials": 1}, "two": {"materials": 2}}}, 3),
