@@ -103,6 +103,11 @@ RESULTS = (
         (*CORE, "nispcodec/simplify", *FORMAT, *METRICS, *RIVALS),
     ),
     CommittedResult(
+        "shading.json",
+        "benchmarks.studies.shading",
+        (*CORE, "nispcodec/simplify", *FORMAT, *RENDER),
+    ),
+    CommittedResult(
         "copies.json",
         "benchmarks.studies.copies",
         (*CORE, "nispcodec/geometry", "nispcodec/simplify", *FORMAT, *METRICS, *RIVALS),

@@ -104,7 +104,8 @@ class CreaseConfig:
                 than positions are off, and little enough for smooth normals to differ little there
     jump        part of the turn of an edge's faces by which the normals must differ
     flat        radians: edges that turn by less look alike either way
-    free        part of their shading's error by which sharp edges are judged: they take no bytes
+    free        part of their shading's error by which sharp edges, and none, are judged: these take
+                no bytes, others up to 4 % of a part's
     negligible  share of the bent edges that may be other than by the rule for parts that say none
     """
 
@@ -112,7 +113,7 @@ class CreaseConfig:
     inset: float = 0.12
     jump: float = 0.5
     flat: float = 0.035
-    free: float = 0.95
+    free: float = 0.85
     negligible: float = 0.005
 
 

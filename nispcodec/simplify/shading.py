@@ -21,17 +21,18 @@ def shaded(source: Source, fewer: Triangles, config: CreaseConfig = CreaseConfig
     """The triangles with creases like the source's; unchanged where nobody said which it has.
 
     Of several ways to find them the one whose shading is nearest to the source's: edges that turn
-    sharply, edges over which the source's normals jump, or both.
+    sharply, or none, which take no bytes; edges over which the source's normals jump, or these and
+    sharp ones.
     """
     if source.triangles.creases is None:
         return fewer
     sharp, jumping = sharp_sides(fewer.faces, fewer.corners), _jumping(source, fewer, config)
     places = np.einsum("sc,mcd->msd", WITHIN, fewer.corners)
     wanted = _normals_at(source, fewer, places)
-    ways = (sharp, jumping, sharp | jumping)
-    errors = [_shading_error(replace(fewer, creases=each), wanted) for each in ways]
-    errors[0] *= config.free
-    return replace(fewer, creases=ways[int(np.argmin(errors))])
+    ways = (sharp, np.zeros_like(sharp), jumping, sharp | jumping)
+    errors = np.array([_shading_error(replace(fewer, creases=each), wanted) for each in ways])
+    errors[:2] *= config.free
+    return replace(fewer, creases=ways[int(errors.argmin())])
 
 
 def written_creases(welded: Triangles, config: CreaseConfig = CreaseConfig()) -> BoolArray:

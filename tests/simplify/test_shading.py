@@ -49,7 +49,7 @@ def test_a_box_whose_shading_is_smooth_stays_so() -> None:
 @pytest.mark.parametrize("flat", [True, False])
 def test_facets_stay_facets_and_smooth_stays_smooth(flat: bool) -> None:
     source = with_creases(ball(6), 0.0 if flat else 3.0)
-    fewer = shaded(Source(source), collapsed(source, 90))
+    fewer = shaded(Source(source), collapsed(source, 200))
     turned = sharp_sides(fewer.faces, fewer.corners, 0.1)
     assert fewer.creases is not None
     share = fewer.creases[turned].mean()
