@@ -52,5 +52,6 @@ def mesh_of(source: Source, corners: Corners) -> TexturedMesh:
         uvs=corners.uvs,
         uv_faces=faces,
         face_materials=corners.materials[faces[:, 0]],
+        creases=None,
         warnings=(),
     )
