@@ -117,6 +117,11 @@ RESULTS = (
         "benchmarks.studies.pruning_or_quantizing",
         (*TRAIN, *FORMAT),
     ),
+    CommittedResult(
+        "decoded_files.json",
+        "benchmarks.studies.decoded_files",
+        ("nispcodec/extract", "nispcodec/io/write"),
+    ),
     CommittedResult("rounding_loss.json", "benchmarks.studies.rounding_loss", ROUND_TRIP),
     CommittedResult("training_step.json", "benchmarks.studies.training_step", ("nispcodec/train",)),
     CommittedResult(
