@@ -168,6 +168,8 @@ def _written(
     if rebake and how["faces"] is None and how["error"] is None:
         how = {**how, "faces": REBAKE_FACES}
     mesh = model.to_mesh(**how)
+    if "name" not in model.document.info:
+        mesh = replace(mesh, name=output.stem)
     if rebake:
         listen(Progress(stage="atlas", overall=0.5))
         mesh = baked(model, mesh, rebake)

@@ -36,6 +36,15 @@ def test_target_error(model: Path, tmp_path: Path) -> None:
     assert len(coarse.faces) < len(fine.faces)
 
 
+def test_objects_have_the_name_of_the_file(model: Path, tmp_path: Path) -> None:
+    out = decoded(model, tmp_path / "teapot.glb", "--resolution", 16)
+    assert load_mesh(out).name == "teapot"
+    data = out.read_bytes()
+    assert data.count(b'"name":"teapot"') == 3  # scene, node, mesh
+    decoded(model, tmp_path / "teapot.obj", "--resolution", 16)
+    assert "o teapot\n" in (tmp_path / "teapot.obj").read_text()
+
+
 def test_compress(model: Path, tmp_path: Path) -> None:
     plain = decoded(model, tmp_path / "plain.glb", "--resolution", 32)
     small = decoded(model, tmp_path / "small.glb", "--resolution", 32, "--compress", "quantize")
