@@ -61,6 +61,7 @@ RESULTS = (
     CommittedResult(
         "duel.json", "benchmarks.headline.duel", made_from=("main_job.json", "rivals.json")
     ),
+    CommittedResult("totals.json", "benchmarks.headline.totals", (*ROUND_TRIP, *RENDER, *RIVALS)),
     CommittedResult("pictures.json", "benchmarks.headline.pictures", (*ROUND_TRIP, *RENDER)),
     CommittedResult(
         "bench.json",
