@@ -29,6 +29,7 @@ from nispcodec.core.texture import srgb_to_linear
 from nispcodec.format import unpack
 from nispcodec.io.load import load_mesh
 from nispcodec.metrics.color import color_at
+from nispcodec.metrics.sides import sides_of
 from nispcodec.metrics.surface import Surface, SurfacePoints, frame_of
 from nispcodec.model import NispModel
 
@@ -119,23 +120,19 @@ def of_mesh(original: Original, decoded: Surface, samples: int) -> dict[str, flo
     return {"mesh": float(found.mean()), "smooth": float(smooth.mean())}
 
 
-def asked(original: Original, decoded: Surface, samples: int) -> SurfacePoints:
-    """Smooth points of an original to ask for colors.
-
-    Hidden ones, further than `NEAR` from the decoded surface, are left out.
-    """
+def asked(original: Original, samples: int) -> SurfacePoints:
+    """Smooth points of an original to ask for colors, those left out that nobody sees."""
     drawn = original.surface.sample(samples, np.random.default_rng([0, 2]))
-    away = np.linalg.norm(decoded.closest(drawn.positions).positions - drawn.positions, axis=1)
-    seen = drawn[away < NEAR]
+    seen = drawn[sides_of(original.surface, drawn).outer]
     return seen[original.smooth(seen)]
 
 
 def specks(original: Original, model: NispModel, samples: int = 400_000) -> dict[str, float]:
     """Shares of specks: `mesh`, of the extracted mesh; `queries`, of answers on the original."""
-    decoded = Surface.of(model.to_mesh(), original.frame)
-    points = asked(original, decoded, samples)
+    points = asked(original, samples)
     answers = luminance(model.color(points.positions, frame="normalized"))
     found = original.specks(points.positions, points, answers)
+    decoded = Surface.of(model.to_mesh(), original.frame)
     return {**of_mesh(original, decoded, samples), "queries": float(found.mean())}
 
 
