@@ -52,7 +52,7 @@ MOST_OF_A_FILE = 0.8
     type=LibraryChoice(geometries),
     default="auto",
     show_default=True,
-    help="As a field (networks) or as a mesh (triangles); auto takes what is smaller.",
+    help="As a field (networks) or as a mesh (triangles); auto takes what is smaller, or both.",
 )
 @click.option(
     "--target-size",

@@ -255,7 +255,7 @@ TESTED_ELSEWHERE = {
     "train/config.py": "test_rules.py",
     # Steps of an encode.
     "dataset/recipes.py": "dataset/test_sampler.py",
-    "encode/fitting.py": "encode/test_targets.py",
+    "encode/field_form.py": "encode/test_recipe.py",
     "encode/report.py": "encode/test_recipe.py",
     "geometry/analysis.py": "dataset/test_sampler.py",
     "geometry/enclosing.py": "geometry/test_bodies.py",

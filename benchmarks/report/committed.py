@@ -103,6 +103,7 @@ RESULTS = (
         "benchmarks.studies.mesh_parts",
         (*CORE, "nispcodec/simplify", *FORMAT, *METRICS, *RIVALS),
     ),
+    CommittedResult("mixed_forms.json", "benchmarks.studies.mixed_forms", ROUND_TRIP),
     CommittedResult(
         "shading.json",
         "benchmarks.studies.shading",

@@ -23,7 +23,7 @@ from benchmarks.measuring.result_file import Record
 from benchmarks.measuring.target import Asked, Target, asked_of_each
 from nispcodec import EncodeConfig
 from nispcodec.core.network import Network
-from nispcodec.encode import fitting
+from nispcodec.encode import field_form
 from nispcodec.io.load import load_mesh
 from nispcodec.metrics.compare import Reference
 from nispcodec.model import NispModel
@@ -51,7 +51,7 @@ def floats() -> Iterator[None]:
     def fit(tasks: list[Task], *how: Any) -> dict[str, Network]:
         return fit_networks([replace(task, quantization=None) for task in tasks], *how)
 
-    with patch.object(fitting, "fit_networks", fit):
+    with patch.object(field_form, "fit_networks", fit):
         yield
 
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
@@ -135,6 +135,16 @@ class TexturedMesh:
             uv_faces=np.full(faces.shape, -1, dtype=np.int32),
             face_materials=np.zeros(len(faces), dtype=np.int32),
             name=name,
+        )
+
+    def only(self, chosen: BoolArray) -> TexturedMesh:
+        """The chosen faces (m,) bool; positions, UVs and materials are all kept."""
+        return replace(
+            self,
+            faces=self.faces[chosen],
+            uv_faces=self.uv_faces[chosen],
+            face_materials=self.face_materials[chosen],
+            creases=None if self.creases is None else self.creases[chosen],
         )
 
     @property

@@ -1,4 +1,4 @@
-"""Networks or triangles: whichever takes fewer bytes at equal errors."""
+"""Networks, triangles, or some bodies as each: what takes the fewest bytes at equal errors."""
 
 from __future__ import annotations
 
@@ -6,15 +6,20 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 
-from nispcodec.core.document import Document
+from nispcodec.core.document import Document, Field
 from nispcodec.core.errors import FitError, NispError
 from nispcodec.core.mesh_part import MeshPart
+from nispcodec.encode.bodies import Sorted
 from nispcodec.encode.config import EncodeConfig, Tuning
 from nispcodec.encode.mesh_form import MeshForm
+from nispcodec.encode.split import Split
 from nispcodec.format import inspect, pack
 from nispcodec.format.constants import TXTR
 from nispcodec.simplify.errors import Errors
 from nispcodec.simplify.ladder import Candidate
+
+Made = Callable[[Field | None, tuple[MeshPart, ...]], Document]
+"""The document of a field and mesh parts, with the asset's materials and images."""
 
 
 @dataclass(frozen=True)
@@ -34,16 +39,25 @@ class Chosen:
 class Choice:
     """The form of one asset: asked before a fit, when the size of networks is known, and after it.
 
-    With `geometry` "auto", the form that is estimated to be clearly larger is not made at all.
+    With `geometry` "auto", a form that is estimated to be clearly larger is not made at all.
+    `halves` makes two of an asset whose bodies are sorted; `split` are those that are to be made.
     """
 
-    def __init__(self, form: MeshForm, config: EncodeConfig, tuning: Tuning) -> None:
+    def __init__(
+        self,
+        form: MeshForm,
+        config: EncodeConfig,
+        tuning: Tuning,
+        halves: Callable[[Sorted], Split | None],
+    ) -> None:
         self._form, self._config, self._tuning = form, config, tuning
+        self._halves = halves
+        self.split: Split | None = None
         self._forms = tuning.forms
         self._estimate, self._field_bytes = 0.0, 0.0
 
     def wants_field(self, size: float, probe_error: float) -> bool:
-        """Whether networks of about so many bytes may be the better form.
+        """Whether networks of about so many bytes may be the better form of the whole asset.
 
         `probe_error` is the held-out error of the SDF's probe, normalized frame.
         """
@@ -52,12 +66,32 @@ class Choice:
         forms = self._forms
         self._field_bytes = size
         distance = forms.fitted * probe_error
-        few, many = forms.surely_smaller * size, forms.surely_larger * size
-        self._estimate = self._form.estimate(distance, few, many)
-        return self._estimate > forms.surely_smaller * size
+        fine = probe_error > self._tuning.training.sizing.fine
+        few = (forms.surely_smaller_fine if fine else forms.surely_smaller) * size
+        self._estimate = self._form.estimate(distance, few, forms.surely_larger * size)
+        self.split = self._better_split(size, distance)
+        return self.split is None and self._estimate > few
+
+    def _better_split(self, size: float, distance: float) -> Split | None:
+        """Halves that promise to take clearly fewer bytes than networks or triangles alone.
+
+        The whole's networks take about so many bytes at such a distance.
+        """
+        forms, found = self._forms, self._form.sorted_bodies()
+        triangles = found.dense_size + found.other_size
+        hope = forms.least_networks + found.other_size
+        if not found.other.any() or hope > forms.worth_mixing * min(size, triangles):
+            return None
+        split = self._halves(found)
+        if split is None:
+            return None
+        networks, error = split.field.foreseen
+        mixed = forms.cost(networks + found.other_size, forms.fitted * error)
+        pure = min(forms.cost(size, distance), forms.cost(triangles, found.distance))
+        return split if mixed < pure + math.log(forms.worth_mixing) else None
 
     def after_fit(self, field: Document, errors: Errors) -> Chosen:
-        """The fitted field, whose surface has these errors, or triangles that are better."""
+        """The fitted document, whose surface has these errors, or triangles that are better."""
         size = own_bytes(field)
         if self._open and errors.made_up.share > self._forms.notable_far:
             instead = self._instead(field, size, errors)
@@ -92,14 +126,14 @@ class Choice:
         fits = own_bytes(meshes) <= most
         return Chosen(meshes, found.errors, size, made_up) if fits else None
 
-    def triangles(self, document: Callable[[tuple[MeshPart, ...]], Document]) -> Chosen:
+    def triangles(self, document: Made) -> Chosen:
         """The asset as triangles, as near as the preset or the target asks.
 
         Raises FitError for a target error that they miss, NispError for a target size that is too
         small.
         """
         found = self._wanted(document)
-        return Chosen(document(found.parts), found.errors, self._field_bytes)
+        return Chosen(document(None, found.parts), found.errors, self._field_bytes)
 
     def _rival(self, size: int, errors: Errors) -> Candidate | None:
         """Triangles to set against a fitted field: no worse, or of no more bytes."""
@@ -112,7 +146,7 @@ class Choice:
         found = self._form.best(min(errors.distance, self._nearest), size)
         return found if found.size < size else self._form.best(errors.distance, size)
 
-    def _wanted(self, document: Callable[[tuple[MeshPart, ...]], Document]) -> Candidate:
+    def _wanted(self, document: Made) -> Candidate:
         config = self._config
         if config.target_error:
             found = self._form.within(config.target_error, math.inf)
@@ -124,7 +158,7 @@ class Choice:
         if not config.target_size:
             return self._form.best(self._nearest, self._field_bytes or math.inf)
         fewest = self._form.fewest()
-        besides = own_bytes(document(fewest.parts)) - fewest.size
+        besides = own_bytes(document(None, fewest.parts)) - fewest.size
         found = self._form.of_size(config.target_size - besides)
         if besides + found.size > config.target_size:
             raise NispError(

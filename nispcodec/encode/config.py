@@ -32,7 +32,8 @@ class EncodeConfig:
     preset          one of `PRESETS`
     seed            of everything random: the same input, seed and engine give the
                     same bytes on one kind of processor, with any number of threads
-    geometry        "auto": as networks or as triangles, whichever is smaller at equal errors;
+    geometry        "auto": as networks, as triangles, or some bodies as each, whichever is
+                    smallest at equal errors;
                     "field": as networks; "mesh": as triangles
     engine          what trains: "native", "torch"; "auto": native wherever that can
     device          "auto", "cpu", "cuda", "cuda:1"; CUDA trains with torch
@@ -135,7 +136,9 @@ class FormConfig:
     least_bytes_per_face   no mesh was coded in fewer
     coarseness       of roundings of the unsimplified mesh, against a negligible distance
     surely_smaller   share of the networks' bytes from which down triangles are taken unseen: the
-                     estimate of what a fit will reach may be that far off
+                     estimate of what a fit will reach may be that far off ...
+    surely_smaller_fine   ... but for assets of fine detail, whose networks are the largest there
+                     are: two such fits ended within an eighth of what the probe said
     surely_larger    share of them from which on networks are
     measured_faces   of the surface of a field at most, when its errors are measured: seconds
     fitted           share of the probe's error that an SDF of the preset `balanced` is left with
@@ -146,6 +149,12 @@ class FormConfig:
     uv_weight        the same for UV errors
     notable_far      share of the area that a form may make up, or lose, before its owner is warned
     worth            times a field's bytes that triangles may take where it makes up notable surface
+    dense            source faces for each that simplification leaves from which on a body is dense
+                     and smooth: networks suit it
+    notable_body     share of the triangles' bytes from which on a body may be worth networks
+    least_networks   bytes that no networks of the preset `balanced` stayed below
+    worth_mixing     share of the bytes of both pure forms that some bodies as networks and others
+                     as triangles may take at most, foreseen
     least_bits       of a coordinate, where a target size asks for grids that coarse
     size_trials      face counts tried for a target size: each halves what is left, on a log scale
     """
@@ -157,6 +166,7 @@ class FormConfig:
     least_bytes_per_face: float = 1.0
     coarseness: tuple[float, ...] = (4.0, 2.0, 1.0)
     surely_smaller: float = 0.5
+    surely_smaller_fine: float = 0.8
     surely_larger: float = 1.4
     measured_faces: float = 150_000
     fitted: float = 0.35
@@ -166,6 +176,10 @@ class FormConfig:
     uv_weight: float = 0.15
     notable_far: float = 5e-4
     worth: float = 3.0
+    dense: float = 4.0
+    notable_body: float = 0.03
+    least_networks: float = 3000.0
+    worth_mixing: float = 0.9
     least_bits: int = 5
     size_trials: int = 7
     ladder: LadderConfig = field(default_factory=LadderConfig)
@@ -173,6 +187,10 @@ class FormConfig:
     def is_sound(self, errors: Errors) -> bool:
         """Whether so little is made up and lost that nobody need be warned."""
         return max(errors.made_up.share, errors.lost.share) <= self.notable_far
+
+    def cost(self, size: float, distance: float) -> float:
+        """The logarithm of bytes, and that of a mean distance as weighted against it."""
+        return math.log(size) + self.distance_weight * math.log(max(distance, self.negligible))
 
 
 @dataclass(frozen=True)

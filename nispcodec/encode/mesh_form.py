@@ -6,18 +6,20 @@ import math
 from collections.abc import Iterator
 from dataclasses import replace
 from functools import cached_property
-from math import log
 
+from nispcodec.core.arrays import BoolArray
 from nispcodec.core.document import Document, Field
 from nispcodec.core.mesh_part import MeshPart
 from nispcodec.core.progress import Listener, Progress
+from nispcodec.encode.bodies import Sorted, sort_bodies
 from nispcodec.encode.config import FormConfig
 from nispcodec.encode.rungs import Rungs
 from nispcodec.extract.meshing import default_resolution, expected_faces, textured_mesh
 from nispcodec.format import mesh
 from nispcodec.geometry.analysis import Analysis
-from nispcodec.geometry.shown import shown
-from nispcodec.simplify.errors import Errors
+from nispcodec.geometry.shown import Shown, shown
+from nispcodec.simplify.closest import Tree
+from nispcodec.simplify.errors import Errors, Original
 from nispcodec.simplify.ladder import Candidate, Simplifier
 from nispcodec.simplify.search import best_for
 from nispcodec.simplify.triangles import Triangles, distinct_corners
@@ -43,10 +45,26 @@ class MeshForm:
     @cached_property
     def simplifier(self) -> Simplifier:
         """The maker of candidates, from the faces that can be seen."""
-        found = shown(self._analysis)
-        triangles = Triangles.of(found.mesh, self._analysis.frame, None, found.sheet)
-        kept = found.faces[distinct_corners(found.mesh)]
+        triangles, kept = self._triangles
         return Simplifier.of_kept(triangles, kept, coded_bytes, self._config.ladder, self._seed)
+
+    @cached_property
+    def _shown(self) -> Shown:
+        return shown(self._analysis)
+
+    @cached_property
+    def _triangles(self) -> tuple[Triangles, BoolArray]:
+        """All of them, and which (m,) are to be held."""
+        found = self._shown
+        triangles = Triangles.of(found.mesh, self._analysis.frame, None, found.sheet)
+        return triangles, found.faces[distinct_corners(found.mesh)]
+
+    @cached_property
+    def _original(self) -> Original:
+        """Hidden faces are in it, too: networks and triangles side by side hide nothing."""
+        triangles, kept = self._triangles
+        samples = self._config.ladder.samples
+        return Original.of(triangles, Tree(triangles.corners), samples, self._seed, kept)
 
     @cached_property
     def _rungs(self) -> Rungs:
@@ -59,7 +77,14 @@ class MeshForm:
         self._progress(Progress(stage="surface"))
         mesh, _ = textured_mesh(document, self._resolution(document.field))
         positions = document.frame.to_normalized(mesh.positions)
-        return self.simplifier.original.errors(replace(mesh, positions=positions))
+        both = document.field is not None and bool(document.meshes)
+        original = self._original if both else self.simplifier.original
+        return original.errors(replace(mesh, positions=positions))
+
+    def sorted_bodies(self) -> Sorted:
+        """By the largest candidate that an estimate has made."""
+        candidate, config = self._rungs.largest, self._config
+        return sort_bodies(self._shown, self._analysis.frame, candidate, config)
 
     def _resolution(self, field: Field | None) -> int | None:
         """Cells a side as a decode has them, or fewer where that would take long to measure."""
@@ -84,7 +109,7 @@ class MeshForm:
         limit of the distance, if any; and of these of those within the limit of the bytes.
         """
         self._progress(Progress(stage="triangles"))
-        found = [*self._rungs.rising(most_bytes), *self._whole(most_bytes)]
+        found = [*self._rungs.rising(most_bytes, most_distance), *self._whole(most_bytes)]
         sound = [each for each in found if self._config.is_sound(each.errors)] or found
         near = [each for each in sound if each.errors.distance <= most_distance] or sound
         within = [each for each in near if each.size <= most_bytes] or near
@@ -141,8 +166,5 @@ class MeshForm:
 
     def _cost(self, candidate: Candidate) -> float:
         config, errors = self._config, candidate.errors
-        return (
-            log(candidate.size)
-            + config.distance_weight * log(max(errors.distance, config.negligible))
-            + config.uv_weight * log(max(errors.uv, config.negligible_uv))
-        )
+        uv = config.uv_weight * math.log(max(errors.uv, config.negligible_uv))
+        return config.cost(candidate.size, errors.distance) + uv

@@ -34,16 +34,28 @@ class Rungs:
             self._made[faces] = self.simplifier.balanced(faces)
         return self._made[faces]
 
-    def rising(self, most_bytes: float) -> Iterator[Candidate]:
-        """More and more faces, up to the first candidate of so many bytes."""
-        before = 0
-        for faces in self._faces:
+    @property
+    def largest(self) -> Candidate:
+        """The candidate of the most faces of those that were made."""
+        return self._made[max(self._made)]
+
+    def rising(self, most_bytes: float, distance: float | None = None) -> Iterator[Candidate]:
+        """More and more faces, up to the first candidate of so many bytes.
+
+        Where a distance is given, none of fewer faces than one that is known to be farther off, and
+        none that is foreseen to have too many bytes once it is reached.
+        """
+        wanted = math.inf if distance is None else distance
+        far = (faces for faces, made in self._made.items() if made.errors.distance > wanted)
+        least, before = max(far, default=0), 0
+        for faces in (each for each in self._faces if each >= least):
             # Where fewer faces cannot be had than the last had, the next are to be more.
             if faces <= before and faces < self._faces[-1]:
                 continue
             found = self.at(faces)
             yield found
-            if found.size >= most_bytes:
+            near = distance is not None and found.errors.distance <= distance
+            if found.size * (self.growth if near else 1.0) >= most_bytes:
                 return
             before = found.faces
 

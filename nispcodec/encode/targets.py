@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -44,7 +45,8 @@ class FitContext:
     listen: Listener
     prunings: Mapping[str, Pruning] = field(default_factory=dict)
 
-    def probe(self) -> dict[str, float]:
+    @cached_property
+    def probed(self) -> dict[str, float]:
         """The held-out errors of the probes, by name."""
         errors: dict[str, float] = {}
         steps: dict[str, int] = {}
@@ -59,6 +61,13 @@ class FitContext:
 
         self.fit(probes(self.problem), heard)
         return errors
+
+    @property
+    def foreseen(self) -> tuple[float, float]:
+        """About the bytes of the preset's networks, and the held-out error of the SDF's probe."""
+        hidden = self.hidden_layers(self.probed, self.budget.scale)
+        specs, sizing = self.problem.specs(hidden), self.problem.config.sizing
+        return bytes_of(specs, sizing), self.probed["sdf"]
 
     def hidden_layers(self, errors: Mapping[str, float], scale: float) -> Hidden:
         """As large as the probes' held-out errors ask for, `scale` times as wide."""
@@ -82,11 +91,10 @@ def fit_with_preset(context: FitContext, wanted: Callable[[float, float], bool])
 
     `wanted` is told their bytes, about, and the held-out error of the SDF's probe.
     """
-    errors = context.probe()
-    hidden = context.hidden_layers(errors, context.budget.scale)
-    problem = context.problem
-    if not wanted(bytes_of(problem.specs(hidden), problem.config.sizing), errors["sdf"]):
+    if not wanted(*context.foreseen):
         return {}
+    errors = context.probed
+    hidden = context.hidden_layers(errors, context.budget.scale)
     return context.fit(context.tasks(hidden, errors, {}), context.listen)
 
 
@@ -107,7 +115,7 @@ def fit_to_size(
             f"target size: expected at least {least:,.0f} bytes for this asset (its tables and the "
             f"smallest networks), found {wanted:,.0f}"
         )
-    errors = context.probe()
+    errors = context.probed
     scale = scale_for_bytes(
         lambda scale: bytes_of(problem.specs(context.hidden_layers(errors, scale)), sizing),
         wanted - besides,
@@ -128,7 +136,7 @@ def fit_to_error(context: FitContext, wanted: float) -> Networks:
     config = context.problem.config.target
     if wanted < config.least_error:
         raise NispError(f"target error: expected at least {config.least_error:g}, found {wanted:g}")
-    errors = context.probe()
+    errors = context.probed
     hidden = dict(context.hidden_layers(errors, context.budget.scale))
     networks: Networks = {}
     tried: dict[int, float] = {}

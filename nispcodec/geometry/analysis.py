@@ -59,15 +59,19 @@ class Analysis:
 
 
 def analyze(
-    mesh: TexturedMesh, seed: int = 0, config: GeometryConfig = GeometryConfig()
+    mesh: TexturedMesh,
+    seed: int = 0,
+    config: GeometryConfig = GeometryConfig(),
+    frame: Frame | None = None,
 ) -> Analysis:
     """Analyze an asset: the same mesh and seed, the same analysis.
 
-    The mesh is in the world frame. Raises MeshError when nothing of it can be held by a signed
+    The mesh is in the world frame. `frame` is that of the asset which the mesh is a part of; None:
+    the normalized frame of the mesh. Raises MeshError when nothing of it can be held by a signed
     distance.
     """
     random = np.random.default_rng([seed, 0])
-    frame = normalizing_frame(mesh)
+    frame = frame or normalizing_frame(mesh)
     corners = frame.to_normalized(mesh.corners)
     welding = welded(mesh)
     solid = build_solid(corners, welding, config.solid)

@@ -7,7 +7,7 @@ import numpy as np
 from benchmarks.studies.rounding_loss import floats
 from nispcodec.core.network import Network, NetworkSpec
 from nispcodec.core.progress import silent
-from nispcodec.encode import fitting
+from nispcodec.encode import field_form
 from nispcodec.train.config import LossConfig
 from nispcodec.train.objectives import SdfObjective
 from nispcodec.train.task import Quantization, Schedule, Task
@@ -26,7 +26,7 @@ def fitted() -> Network:
         Quantization(1e-3),
     )
     # As the encoder finds it: the benchmark puts another in its place.
-    fit = vars(fitting)["fit_networks"]
+    fit = vars(field_form)["fit_networks"]
     return fit([task], 0, ENGINE, 1, silent)["sdf"]
 
 

@@ -89,3 +89,15 @@ def test_a_sound_material_is_taken() -> None:
         "m", alpha_mode="blend", maps={"occlusion": TextureMap(0, ("clamp", "mirror"))}
     )
     assert replace(MESH, materials=(sound,)).materials == (sound,)
+
+
+def test_some_faces_keep_all_that_is_theirs() -> None:
+    mesh = pair()
+    creases = np.eye(len(mesh.faces), 3, dtype=np.bool_)
+    chosen = np.arange(len(mesh.faces)) > 0
+    some = replace(mesh, creases=creases).only(chosen)
+    assert some.creases is not None
+    np.testing.assert_array_equal(some.creases, creases[chosen])
+    np.testing.assert_array_equal(some.corners, mesh.corners[chosen])
+    np.testing.assert_array_equal(some.corner_uvs, mesh.corner_uvs[chosen])
+    assert mesh.only(chosen).creases is None

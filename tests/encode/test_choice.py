@@ -11,10 +11,11 @@ import numpy as np
 import pytest
 
 from nispcodec import EncodeConfig
-from nispcodec.core.document import Document
+from nispcodec.core.document import Document, Field
 from nispcodec.core.errors import FitError, NispError
 from nispcodec.core.mesh_part import MeshPart
 from nispcodec.core.network import NetworkSpec
+from nispcodec.encode.bodies import Sorted
 from nispcodec.encode.choice import Choice, own_bytes
 from nispcodec.encode.config import FormConfig, Tuning
 from nispcodec.encode.mesh_form import coded_bytes
@@ -24,6 +25,7 @@ from tests import tiny
 from tests.infer.parts import cube, part_of
 
 PART = part_of(cube())
+TUNING = Tuning()
 FIELD = tiny.document(sdf=tiny.random_network(NetworkSpec((24, 24), 1)))
 SIZE = own_bytes(FIELD)
 EXACT = Errors(0.0, 0.0, 0.0, 0.0)
@@ -40,6 +42,11 @@ class Told:
     def estimate(self, distance: float, few: float, many: float) -> float:
         return self.bytes
 
+    def sorted_bodies(self) -> Sorted:
+        """Half of the faces dense, and about nine tenths of the bytes."""
+        dense = np.array([True, False])
+        return Sorted(dense, ~dense, 0.9 * self.bytes, 0.1 * self.bytes, 3.5e-4)
+
     def __getattr__(self, name: str) -> Any:
         def answer(*limits: float) -> Any:
             self.asked.append((name, *limits, *([0.0] * (2 - len(limits)))))  # type: ignore[arg-type]
@@ -52,12 +59,13 @@ def candidate(errors: Errors = EXACT) -> Any:
     return SimpleNamespace(parts=(PART,), errors=errors, size=coded_bytes((PART,)))
 
 
-def choice(form: Told, **options: Any) -> Choice:
-    return Choice(form, EncodeConfig(**options), Tuning())  # type: ignore[arg-type]
+def choice(form: Told, halves: Any = None, tuning: Tuning = TUNING, **options: Any) -> Choice:
+    config = EncodeConfig(**options)
+    return Choice(form, config, tuning, lambda _: halves)  # type: ignore[arg-type]
 
 
-def as_mesh(parts: tuple[MeshPart, ...]) -> Document:
-    return replace(FIELD, field=None, meshes=parts)
+def as_mesh(field: Field | None, parts: tuple[MeshPart, ...]) -> Document:
+    return replace(FIELD, field=field, meshes=parts)
 
 
 @pytest.mark.parametrize(
@@ -67,6 +75,31 @@ def test_networks_are_fitted_unless_triangles_are_surely_smaller(
     estimate: float, wanted: bool
 ) -> None:
     assert choice(Told(estimate)).wants_field(1000.0, 1e-3) is wanted
+
+
+def test_of_fine_detail_less_is_left_to_the_fit() -> None:
+    fine = 1.1 * Tuning().training.sizing.fine
+    assert [choice(Told(each)).wants_field(1000.0, fine) for each in (790, 810)] == [False, True]
+
+
+def halves(networks: float) -> Any:
+    """Two of an asset, whose networks are foreseen to take so many bytes, at 3.5e-4."""
+    return SimpleNamespace(field=SimpleNamespace(foreseen=(networks, 1e-3)))
+
+
+@pytest.mark.parametrize(("networks", "taken"), [(4000.0, True), (9000.0, False)])
+def test_an_asset_is_split_where_both_halves_together_are_small(
+    networks: float, taken: bool
+) -> None:
+    found = choice(Told(10_000.0), halves(networks))
+    assert found.wants_field(30_000.0, 1e-3) is False
+    assert (found.split is not None) is taken
+
+
+def test_halves_that_cannot_be_small_are_not_made() -> None:
+    found = choice(Told(3500.0), halves(1.0))
+    found.wants_field(30_000.0, 1e-3)
+    assert found.split is None
 
 
 @pytest.mark.parametrize(
@@ -104,14 +137,14 @@ def test_triangles_in_place_of_a_poor_field_are_as_near_as_the_preset_says() -> 
 def test_triangles_are_worth_more_bytes_where_the_field_makes_up_surface() -> None:
     webbed = replace(OFF, made_up=FarPoints(1000, np.zeros((50, 3)), np.zeros(50, np.int32)))
     dear, form = Tuning(forms=FormConfig(worth=1e3)), Told(10.0 * SIZE, best=candidate())
-    taken = Choice(form, EncodeConfig(), dear).after_fit(FIELD, webbed)  # type: ignore[arg-type]
+    taken = choice(form, tuning=dear).after_fit(FIELD, webbed)
     assert taken.document.meshes == (PART,)
     assert (taken.other_bytes, taken.other_made_up) == (SIZE, 0.05)
     cheap, form = Tuning(forms=FormConfig(worth=1e-3)), Told(10.0 * SIZE, best=candidate())
-    kept = Choice(form, EncodeConfig(), cheap).after_fit(FIELD, webbed)  # type: ignore[arg-type]
+    kept = choice(form, tuning=cheap).after_fit(FIELD, webbed)
     assert (kept.document, kept.other_made_up) == (FIELD, 0.0)
     no_better = Told(10.0 * SIZE, best=candidate(webbed))
-    kept = Choice(no_better, EncodeConfig(), dear).after_fit(FIELD, webbed)  # type: ignore[arg-type]
+    kept = choice(no_better, tuning=dear).after_fit(FIELD, webbed)
     assert kept.document is FIELD
 
 
@@ -135,7 +168,7 @@ def test_to_a_size_the_nearer_form_is_taken() -> None:
 
 def test_triangles_over_the_size_are_not_taken_however_near() -> None:
     form = Told(10.0, of_size=candidate(EXACT))
-    size = own_bytes(as_mesh((PART,)))
+    size = own_bytes(as_mesh(None, (PART,)))
     chosen = choice(form, target_size=size - 1).after_fit(FIELD, OFF)
     assert (chosen.document, chosen.errors, chosen.other_bytes) == (FIELD, OFF, size)
 

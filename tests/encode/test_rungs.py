@@ -77,3 +77,11 @@ def test_rising_ends_with_the_first_of_so_many_bytes(rungs: Rungs) -> None:
 def test_candidates_of_which_nothing_is_left_are_no_trouble(law: PowerLaw, rungs: Rungs) -> None:
     law.least = 1000
     assert 900 < rungs.bytes_at(1 / 2000, 600.0, 900.0) < math.inf
+
+
+def test_to_a_distance_none_is_made_that_is_surely_too_far_or_too_large(
+    law: PowerLaw, rungs: Rungs
+) -> None:
+    rungs.at(875)
+    found = [each.faces for each in rungs.rising(7500.0, 1 / 1500)]
+    assert found == [875, 1575]
