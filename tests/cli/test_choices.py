@@ -8,7 +8,7 @@ import sys
 from collections.abc import Iterable
 
 import pytest
-from nispcodec_cli import COMMANDS
+from nispcodec_cli import COMMANDS, grid
 from nispcodec_cli.choices import LibraryChoice
 
 from nispcodec.core.slots import SLOTS
@@ -30,7 +30,7 @@ from tests.cli.conftest import done, nisp, refused
         ("encode", "--prune", STRATEGIES),
         ("recode", "--texture-format", IMAGE_FORMATS),
         ("recode", "--coding", CODINGS),
-        ("decode", "--output FILE", SUFFIXES),
+        ("decode", "--output FILE", [*SUFFIXES, grid.SUFFIX]),
         ("render", "--output FILE", images.SUFFIXES),
         ("sheet", "--output FILE", images.EXACT),
         ("render", "--channel", channels.CHANNELS),
