@@ -105,15 +105,18 @@ class Choice:
         meshes = replace(field, field=None, meshes=found.parts)
         other = own_bytes(meshes)
         target = self._config.target_size
-        better = other < size
+        better = other < size * self._forms.worth_of_uvs(errors, found.errors)
         if target:
             better = other <= target and found.errors.distance < errors.distance
         return Chosen(meshes, found.errors, size) if better else Chosen(field, errors, other)
 
     def _instead(self, field: Document, size: int, errors: Errors) -> Chosen | None:
-        """Triangles in place of a field that makes up surface, unless they take many more bytes."""
+        """Triangles in place of a field that makes up surface, unless they take many more bytes.
+
+        The more it makes up, the more bytes.
+        """
         made_up, target = errors.made_up.share, self._config.target_size
-        most = target or self._forms.worth * size
+        most = target or size * min(self._forms.worth, made_up / self._forms.notable_far)
         if self._config.target_error:
             found = self._form.within(self._config.target_error, errors.uv)
         elif target:
@@ -136,15 +139,20 @@ class Choice:
         return Chosen(document(None, found.parts), found.errors, self._field_bytes)
 
     def _rival(self, size: int, errors: Errors) -> Candidate | None:
-        """Triangles to set against a fitted field: no worse, or of no more bytes."""
+        """Triangles to set against a fitted field: no worse, or of no more bytes.
+
+        More bytes are right as far as better UVs are worth them.
+        """
         if self._config.target_size:
             return self._form.of_size(size)
         if self._config.target_error:
             return self._form.within(self._config.target_error, errors.uv)
-        if self._form.estimate(errors.distance, size, size) >= size:
+        most = size * self._forms.worth_of_uvs(errors)
+        if self._form.estimate(errors.distance, size, most) >= most:
             return None
-        found = self._form.best(min(errors.distance, self._nearest), size)
-        return found if found.size < size else self._form.best(errors.distance, size)
+        found = self._form.best(min(errors.distance, self._nearest), most)
+        # Of few candidates the best may be nearer than it need be, and too large.
+        return found if found.size < most else self._form.within(errors.distance, errors.uv)
 
     def _wanted(self, document: Made) -> Candidate:
         config = self._config

@@ -148,7 +148,7 @@ class FormConfig:
                      a third more bytes
     uv_weight        the same for UV errors
     notable_far      share of the area that a form may make up, or lose, before its owner is warned
-    worth            times a field's bytes that triangles may take where it makes up notable surface
+    worth            times a field's bytes that triangles may take at most where it makes up surface
     dense            source faces for each that simplification leaves from which on a body is dense
                      and smooth: networks suit it
     notable_body     share of the triangles' bytes from which on a body may be worth networks
@@ -183,6 +183,11 @@ class FormConfig:
     least_bits: int = 5
     size_trials: int = 7
     ladder: LadderConfig = field(default_factory=LadderConfig)
+
+    def worth_of_uvs(self, worse: Errors, better: Errors | None = None) -> float:
+        """Times as many bytes as better UVs, by default the best, are worth; 1 at least."""
+        least = max(better.uv if better else 0.0, self.negligible_uv)
+        return max(worse.uv / least, 1.0) ** self.uv_weight
 
     def is_sound(self, errors: Errors) -> bool:
         """Whether so little is made up and lost that nobody need be warned."""
