@@ -105,7 +105,7 @@ class Choice:
         meshes = replace(field, field=None, meshes=found.parts)
         other = own_bytes(meshes)
         target = self._config.target_size
-        better = other < size * self._forms.worth_of_uvs(errors, found.errors)
+        better = other < size
         if target:
             better = other <= target and found.errors.distance < errors.distance
         return Chosen(meshes, found.errors, size) if better else Chosen(field, errors, other)
@@ -139,20 +139,18 @@ class Choice:
         return Chosen(document(None, found.parts), found.errors, self._field_bytes)
 
     def _rival(self, size: int, errors: Errors) -> Candidate | None:
-        """Triangles to set against a fitted field: no worse, or of no more bytes.
-
-        More bytes are right as far as better UVs are worth them.
-        """
+        """Triangles to set against a fitted field, if there are some in fewer bytes or as asked."""
         if self._config.target_size:
             return self._form.of_size(size)
         if self._config.target_error:
             return self._form.within(self._config.target_error, errors.uv)
-        most = size * self._forms.worth_of_uvs(errors)
-        if self._form.estimate(errors.distance, size, most) >= most:
+        if self._form.estimate(errors.distance, size, size) >= size:
             return None
-        found = self._form.best(min(errors.distance, self._nearest), most)
-        # Of few candidates the best may be nearer than it need be, and too large.
-        return found if found.size < most else self._form.within(errors.distance, errors.uv)
+        for distance in (min(errors.distance, self._nearest), errors.distance):
+            found = self._form.best(distance, size)
+            if found.size < size:
+                return found
+        return None
 
     def _wanted(self, document: Made) -> Candidate:
         config = self._config

@@ -184,11 +184,6 @@ class FormConfig:
     size_trials: int = 7
     ladder: LadderConfig = field(default_factory=LadderConfig)
 
-    def worth_of_uvs(self, worse: Errors, better: Errors | None = None) -> float:
-        """Times as many bytes as better UVs, by default the best, are worth; 1 at least."""
-        least = max(better.uv if better else 0.0, self.negligible_uv)
-        return max(worse.uv / least, 1.0) ** self.uv_weight
-
     def is_sound(self, errors: Errors) -> bool:
         """Whether so little is made up and lost that nobody need be warned."""
         return max(errors.made_up.share, errors.lost.share) <= self.notable_far

@@ -131,24 +131,6 @@ def test_triangles_in_place_of_a_poor_field_are_as_near_as_the_preset_says() -> 
         assert form.asked == [("best", min(distance, preset), float(SIZE))]
 
 
-def test_better_uvs_are_worth_more_bytes() -> None:
-    forms = TUNING.forms
-    assert forms.worth_of_uvs(replace(OFF, uv=forms.negligible_uv)) == 1
-    assert forms.worth_of_uvs(OFF, replace(OFF, uv=0.1)) == 1
-    assert 1 < forms.worth_of_uvs(OFF, replace(OFF, uv=0.005)) < forms.worth_of_uvs(OFF)
-    form = Told(10.0, best=candidate())
-    choice(form).after_fit(FIELD, OFF)
-    assert form.asked[0][2] == SIZE * forms.worth_of_uvs(OFF)
-
-
-def test_where_no_candidate_is_small_enough_one_of_the_fields_errors_is_sought() -> None:
-    large = SimpleNamespace(parts=(PART,), errors=EXACT, size=100 * SIZE)
-    form = Told(10.0, best=large, within=candidate())
-    chosen = choice(form).after_fit(FIELD, OFF)
-    assert form.asked[-1] == ("within", OFF.distance, OFF.uv)
-    assert chosen.document.meshes == (PART,)
-
-
 def test_triangles_are_worth_more_bytes_where_the_field_makes_up_surface() -> None:
     webbed = replace(OFF, made_up=FarPoints(1000, np.zeros((50, 3)), np.zeros(50, np.int32)))
     dear, form = Tuning(forms=FormConfig(worth=1e3)), Told(10.0 * SIZE, best=candidate())
