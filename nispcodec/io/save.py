@@ -16,7 +16,7 @@ from nispcodec.core.errors import MeshError
 from nispcodec.core.extras import require
 from nispcodec.io.write.colors import untextured
 from nispcodec.io.write.glb import glb_bytes
-from nispcodec.io.write.gltf_compression import COMPRESSIONS, PACKAGES
+from nispcodec.io.write.gltf_compression import COMPRESSIONS
 from nispcodec.io.write.losses import glb_losses, obj_losses, ply_losses, stl_losses
 from nispcodec.io.write.obj import obj_files
 from nispcodec.io.write.ply import ply_files
@@ -102,8 +102,10 @@ def expect_compressible(path: Path, compress: str | None) -> None:
         raise MeshError(f"compress: expected one of {', '.join(COMPRESSIONS)}, found {compress!r}")
     if path.suffix.lower() != ".glb":
         raise MeshError(f"{path}: expected .glb for the compression {compress}")
-    if compress in PACKAGES:
-        require(PACKAGES[compress], extra="gltf", what_for=f"compressing by {compress}")
+    if compress == "draco":
+        require("DracoPy", extra="gltf", what_for="compressing by draco")
+    if compress == "meshopt":
+        require("meshoptimizer", extra="gltf", what_for="compressing by meshopt")
 
 
 def mesh_paths(

@@ -17,6 +17,7 @@ from benchmarks.measuring.target import Target
 RECORD = {
     "encode": {"seconds": 100.0, "peak_bytes": 10**9},
     "bytes": {"geometry_uv": 50_000},
+    "made_up_share": 0.0,
     "metrics": {
         "geometry": {"larger": {"mean": 4e-4}},
         "uv": {"larger": {"median": 4e-4}},

@@ -271,7 +271,7 @@ _FIELDS: dict[str, tuple[dict[int, Any], str]] = {
     "info-empty": ({10: {}}, "document.info"),
     "info-list": ({10: [1]}, "document.info"),
     "info-key-reserved": ({10: {0: 1}}, "document.info.0"),
-    "info-key-unknown": ({10: {10: 1}}, "document.info.10"),
+    "info-key-unknown": ({10: {31: 1}}, "document.info.31"),
     "info-key-by-name": ({10: {"seed": 1}}, "document.info.seed"),
     "info-key-bool": ({10: {True: 1}}, "document.info.True"),
     "info-value": ({10: {1: [1]}}, "document.info.preset"),

@@ -15,11 +15,13 @@ from nispcodec.core.asset import TexturedMesh
 from nispcodec.core.errors import MeshError, NispError
 from nispcodec.io.load import load_mesh
 from nispcodec.io.save import write_mesh
-from nispcodec.io.write.gltf_compression import COMPRESSIONS, PACKAGES
+from nispcodec.io.write.gltf_compression import COMPRESSIONS
 from nispcodec.model import NispModel
 from tests import tiny
 
 ALL = pytest.mark.parametrize("how", COMPRESSIONS)
+
+PACKAGES = {"draco": "DracoPy", "meshopt": "meshoptimizer"}
 
 
 @pytest.fixture(scope="module")

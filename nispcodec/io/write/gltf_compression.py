@@ -24,8 +24,6 @@ Arrays = dict[str, AnyArray]
 
 QUANTIZATION = "KHR_mesh_quantization"
 MESHOPT, DRACO = "EXT_meshopt_compression", "KHR_draco_mesh_compression"
-PACKAGES = {"draco": "DracoPy", "meshopt": "meshoptimizer"}
-"""What each way needs; `quantize` needs none."""
 COMPRESSIONS = ("draco", "meshopt", "quantize")
 BYTE, UBYTE, USHORT, UINT, FLOAT = 5120, 5121, 5123, 5125, 5126
 TYPES = {USHORT: "<u2", UINT: "<u4", FLOAT: "<f4", BYTE: "<i1", UBYTE: "<u1"}
