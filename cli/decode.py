@@ -100,7 +100,7 @@ def command(
              nisp decode model.nisp --compress meshopt -o small.glb
              nisp decode model.nisp --grid 128 -o field.npz
     """
-    from nispcodec.io.save import expect_compressible, losses
+    from nispcodec.io.save import expect_compressible
     from nispcodec.model import NispModel
 
     expect_compressible(output, compress)
@@ -118,10 +118,25 @@ def command(
     refuse_overwriting(_planned(loaded, output, colors, bool(rebake)), force)
     with shown("decode", progress, quiet) as listen:
         mesh, written = _written(loaded, output, colors, rebake, compress, how, listen)
+    _told(mesh, output, written, colors, time.monotonic() - started, how, as_json)
+
+
+def _told(
+    mesh: TexturedMesh,
+    output: Path,
+    written: list[Path],
+    colors: bool,
+    seconds: float,
+    how: dict[str, Any],
+    as_json: bool,
+) -> None:
+    """Print what was lost, and what was written."""
+    from nispcodec.io.save import losses
+
     if not colors:
         mesh = replace(mesh, warnings=(*mesh.warnings, *losses(mesh, output)))
     warn(mesh.warnings)
-    report = _report(mesh, output, written, time.monotonic() - started)
+    report = _report(mesh, output, written, seconds)
     if as_json:
         print_json(report)
     else:

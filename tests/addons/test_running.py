@@ -61,29 +61,32 @@ class Screen:
         self.status.append(text)
 
 
+class Asked:
+    """What an operator says, and what it is asked to begin and to finish."""
+
+    bl_label = "Import"
+    code = ""
+
+    def __init__(self) -> None:
+        self.reports: list[tuple[str, str]] = []
+        self.finished = False
+
+    def report(self, levels: set[str], text: str) -> None:
+        (level,) = levels
+        self.reports.append((level, text))
+
+    def begin(self, context: object, mesh: Path) -> list[str]:
+        if not self.code:
+            raise NispFailed("no nisp")
+        return [sys.executable, "-c", self.code]
+
+    def finish(self, mesh: Path) -> None:
+        self.finished = True
+
+
 def operator(running: ModuleType, code: str) -> Any:
     """One that runs this in place of nisp."""
-
-    class Operator(running.RunsNisp):  # type: ignore[name-defined, misc]
-        bl_label = "Import"
-
-        def __init__(self) -> None:
-            self.reports: list[tuple[str, str]] = []
-            self.finished = False
-
-        def report(self, levels: set[str], text: str) -> None:
-            (level,) = levels
-            self.reports.append((level, text))
-
-        def begin(self, context: object, mesh: Path) -> list[str]:
-            if not code:
-                raise NispFailed("no nisp")
-            return [sys.executable, "-c", code]
-
-        def finish(self, mesh: Path) -> None:
-            self.finished = True
-
-    return Operator()
+    return type("Operator", (Asked, running.RunsNisp), {"code": code})()
 
 
 def until_ended(made: Any, screen: Screen) -> Any:

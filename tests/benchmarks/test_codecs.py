@@ -36,6 +36,8 @@ def source(tmp_path_factory: pytest.TempPathFactory) -> Source:
 
 
 PROTECTED: Setting = {"seams": "protected"}
+HALF: Setting = {"surface": "all", "kept": 0.5, "qp": 11, "qt": 10}
+MOVED = HALF | PROTECTED | {"uv_weight": 10.0}
 # Codec -> setting and the largest mean distance and UV error that its bits explain.
 EXPECTED: dict[str, tuple[Setting, float, float]] = {
     "obj": ({"text": "as it is"}, 1e-12, 1e-3),
@@ -43,28 +45,14 @@ EXPECTED: dict[str, tuple[Setting, float, float]] = {
     "obj_zst": ({"text": "4 digits"}, 3e-4, 1e-3),
     "glb": ({}, 1e-6, 1e-3),
     "draco": ({"qp": 11, "qt": 10}, 5e-4, 2e-3),
-    "simplified_draco": ({"surface": "all", "kept": 0.5, "qp": 11, "qt": 10}, 3e-3, 2e-2),
+    "simplified_draco": (HALF, 3e-3, 2e-2),
     "simplified_update_draco": (
-        {
-            "surface": "all",
-            "kept": 0.5,
-            "qp": 11,
-            "qt": 10,
-            "uv_weight": 10.0,
-            "seams": "protected",
-        },
+        MOVED,
         3e-3,
         2e-2,
     ),
     "simplified_update_meshopt": (
-        {
-            "surface": "all",
-            "kept": 0.5,
-            "qp": 11,
-            "qt": 10,
-            "uv_weight": 10.0,
-            "seams": "protected",
-        },
+        MOVED,
         3e-3,
         2e-2,
     ),

@@ -59,9 +59,9 @@ def candidate(errors: Errors = EXACT) -> Any:
     return SimpleNamespace(parts=(PART,), errors=errors, size=coded_bytes((PART,)))
 
 
-def choice(form: Told, halves: Any = None, tuning: Tuning = TUNING, **options: Any) -> Choice:
+def choice(form: Any, halves: Any = None, tuning: Tuning = TUNING, **options: Any) -> Choice:
     config = EncodeConfig(**options)
-    return Choice(form, config, tuning, lambda _: halves)  # type: ignore[arg-type]
+    return Choice(form, config, tuning, lambda _: halves)
 
 
 def as_mesh(field: Field | None, parts: tuple[MeshPart, ...]) -> Document:

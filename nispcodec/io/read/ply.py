@@ -281,12 +281,8 @@ def _assembled(
     if not whole.all():
         warnings.append(f"{name}: left out {(~whole).sum()} face(s) of fewer than three corners")
         kept = np.repeat(whole, sizes)
-        corners, corner_uvs, sizes, numbers = (
-            corners[kept],
-            corner_uvs[kept],
-            sizes[whole],
-            numbers[whole],
-        )
+        corners, corner_uvs = corners[kept], corner_uvs[kept]
+        sizes, numbers = sizes[whole], numbers[whole]
     triangles, owner = triangulate(positions[corners], sizes)
     uvs, uv_faces = without_unusable(uvs, corner_uvs[triangles], name, warnings)
     mesh = TexturedMesh(

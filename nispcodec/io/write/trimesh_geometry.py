@@ -50,9 +50,7 @@ def _arguments(
         "vertices": vertices.positions,
         "faces": vertices.faces,
         "vertex_normals": vertices.normals,
-        "visual": TextureVisuals(  # type: ignore[no-untyped-call]
-            uv=vertices.uvs if has_uv else None, material=material
-        ),
+        "visual": TextureVisuals(uv=vertices.uvs if has_uv else None, material=material),
         # trimesh would merge vertices, and shuffle the others.
         "process": False,
     }
@@ -64,7 +62,7 @@ def _pbr(material: Material, images: list[PIL.Image.Image], has_uv: bool) -> PBR
 
     used = material.maps.items() if has_uv else ()
     maps = {BY_NAME[slot].gltf_key: images[each.texture] for slot, each in used}
-    return PBRMaterial(  # type: ignore[no-untyped-call]
+    return PBRMaterial(
         name=material.name,
         baseColorFactor=np.asarray(material.base_color),
         metallicFactor=material.metallic,
