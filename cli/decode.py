@@ -118,7 +118,8 @@ def command(
     refuse_overwriting(_planned(loaded, output, colors, bool(rebake)), force)
     with shown("decode", progress, quiet) as listen:
         mesh, written = _written(loaded, output, colors, rebake, compress, how, listen)
-    _told(mesh, output, written, colors, time.monotonic() - started, how, as_json)
+    simple = bool(loaded.document.field) and how["faces"] is None and how["error"] is None
+    _told(mesh, output, written, colors, time.monotonic() - started, simple, as_json)
 
 
 def _told(
@@ -127,10 +128,10 @@ def _told(
     written: list[Path],
     colors: bool,
     seconds: float,
-    how: dict[str, Any],
+    simple: bool,
     as_json: bool,
 ) -> None:
-    """Print what was lost, and what was written."""
+    """Print what was lost, and what was written; `simple`: there might be fewer faces."""
     from nispcodec.io.save import losses
 
     if not colors:
@@ -140,7 +141,7 @@ def _told(
     if as_json:
         print_json(report)
     else:
-        _print_report(report, written, simple=how["faces"] is None and how["error"] is None)
+        _print_report(report, written, simple)
 
 
 def _planned(model: NispModel, output: Path, colors: bool, rebake: bool) -> list[Path]:
@@ -251,7 +252,6 @@ def _report(
 
 
 def _print_report(report: dict[str, Any], written: list[Path], simple: bool) -> None:
-    """`simple`: nothing was asked about the number of faces."""
     took = duration(report["seconds"])
     click.echo(f"{report['file']}: {report['faces']:,} faces in {took}")
     print_written(written, "  ")

@@ -41,12 +41,15 @@ def textured_mesh(
 
     The mesh's warnings tell what was dropped.
     resolution: cells along the cube's edge, see `default_resolution`; faces: the most triangles
-    that the mesh may have, seams included; error: as few triangles as keep the mean distance to the
-    field's surface below it (normalized frame), by default `negligible_error`. Where only a
-    resolution is given, all triangles of that grid are kept. keep_spurious: do not drop noise.
+    that the mesh may have, seams included, though mesh parts keep all of theirs; error: as few
+    triangles as keep the mean distance to the field's surface below it (normalized frame), by
+    default `negligible_error`. Where only a resolution is given, all triangles of that grid are
+    kept. keep_spurious: do not drop noise.
     """
+    whole = sum(len(part.faces) * len(part.placements) for part in document.meshes)
     if document.field is None:
-        return joined(document, None), ExtractionReport(0, 0, 0, 0)
+        mesh = replace(joined(document, None), warnings=_missed(whole, whole, faces))
+        return mesh, ExtractionReport(0, 0, 0, 0)
     field = document.field
     grid, report = field_surface(field, resolution, error, keep_spurious, config)
     if resolution is None and faces is None and error is None:
@@ -57,11 +60,10 @@ def textured_mesh(
     if faces is None:
         cut, charts = _cut(field, surface, surface is not grid, config)
     else:
-        cut, charts = _with_at_most(field, surface, faces, config)
-    dressed = _dressed(document, field, *_opened(field, cut, charts, config))
-    return replace(
-        joined(document, dressed), warnings=(*report.warnings, *_missed(cut, faces))
-    ), report
+        cut, charts = _with_at_most(field, surface, max(faces - whole, 1), config)
+    mesh = joined(document, _dressed(document, field, *_opened(field, cut, charts, config)))
+    missed = _missed(whole + len(cut.faces), whole, faces)
+    return replace(mesh, warnings=(*report.warnings, *missed)), report
 
 
 def negligible_error(
@@ -148,14 +150,14 @@ def _with_at_most(
     return cut, charts
 
 
-def _missed(surface: Surface, faces: int | None) -> tuple[str, ...]:
-    """A warning where there are more faces than asked for."""
-    if faces is None or len(surface.faces) <= faces:
+def _missed(found: int, whole: int, faces: int | None) -> tuple[str, ...]:
+    """A warning where there are more faces than asked for; `whole` of them are of mesh parts."""
+    if faces is None or found <= faces:
         return ()
-    return (
-        f"expected at most {faces:,} faces, found {len(surface.faces):,}: the surface has too many "
-        f"pieces and seams for fewer",
-    )
+    why = f"{whole:,} are of triangles that the file holds, which are kept as they are"
+    if not whole:
+        why = "the surface has too many pieces and seams for fewer"
+    return (f"expected at most {faces:,} faces, found {found:,}: {why}",)
 
 
 def _opened(

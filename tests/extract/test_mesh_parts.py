@@ -48,6 +48,18 @@ def test_beside_a_field_its_faces_follow_the_fields() -> None:
     )
 
 
+def test_mesh_parts_keep_their_faces_and_that_is_said() -> None:
+    said = "24 are of triangles that the file holds, which are kept as they are"
+    few, _ = textured_mesh(MESHES, faces=10)
+    assert few.warnings == (f"expected at most 10 faces, found 24: {said}",)
+    assert textured_mesh(MESHES, faces=24)[0].warnings == ()
+    both = replace(tiny.document(), meshes=(PART,))
+    for faces, missed in ((300, False), (20, True)):
+        mesh, _ = textured_mesh(both, 32, faces=faces)
+        assert (len(mesh.faces) > faces) is missed
+        assert any(said in each for each in mesh.warnings) is missed
+
+
 def test_faces_without_uv_stay_without() -> None:
     bare = replace(
         PART,
