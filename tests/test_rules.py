@@ -204,7 +204,10 @@ def loaded_by(code: str) -> set[str]:
 
 def test_importing_the_library_loads_nothing_heavy() -> None:
     heavy = {"torch", "scipy", "igl", "trimesh", "PIL", "skimage", "msgpack", "zstandard"}
-    assert not heavy & loaded_by("import nispcodec")
+    loaded = loaded_by("import nispcodec")
+    assert not heavy & loaded
+    # Settings alone, and no code that they are for.
+    assert not {"nispcodec.simplify.errors", "nispcodec.metrics.surface"} & loaded
 
 
 def test_the_command_answers_help_without_numpy() -> None:

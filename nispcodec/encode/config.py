@@ -12,10 +12,10 @@ from nispcodec.core.errors import NispError
 from nispcodec.dataset.config import SamplingConfig
 from nispcodec.geometry.config import GeometryConfig
 from nispcodec.simplify.config import LadderConfig
-from nispcodec.simplify.errors import Errors
 from nispcodec.train.config import TrainConfig
 
 if TYPE_CHECKING:
+    from nispcodec.simplify.errors import Errors
     from nispcodec.train.prune import Pruning
 
 IMAGE_FORMATS = ("webp", "avif", "jpeg")
