@@ -83,6 +83,13 @@ def test_colors_are_left_out_by_name(owner: str, name: str) -> None:
     assert mesh.warnings == (f"a.ply: left out {owner} colors",)
 
 
+def test_a_line_of_the_header_without_a_keyword_is_left_out_with_a_warning() -> None:
+    header = "Created by a tool - www.example.org\n" + VERTEX + FACE.format(1)
+    mesh = read(text(header, SQUARE + "3 0 1 2\n"))
+    assert len(mesh.faces) == 1
+    assert "a.ply:3: left out a line of the header" in mesh.warnings
+
+
 @pytest.mark.parametrize("end", ["\n", "\r\n", "\r"])
 def test_the_header_ends_at_a_line_of_its_own(end: str) -> None:
     header = "comment end_header of a tool\n" + VERTEX + FACE.format(1)

@@ -31,6 +31,7 @@ _UV_NAMES = (("s", "t"), ("u", "v"), ("texture_u", "texture_v"))
 _XYZ = ("x", "y", "z")
 _NORMAL = ("nx", "ny", "nz")
 _COLORS = {"red", "diffuse_red", "r"}
+_KEYWORDS = {"ply", "format", "comment", "obj_info", "element", "property"}
 # The line of its own, which a comment may quote.
 _END = re.compile(rb"[\r\n]end_header[ \t]*(?:\r?\n|\r)")
 # Comments before the name of an image, besides MeshLab's TextureFile.
@@ -61,13 +62,15 @@ class Element:
 class Header:
     """A PLY header; `size` is its length in bytes.
 
-    `textures` are the names of texture files, `likely_textures` what other comments seem to name.
+    `textures` are the names of texture files, `likely_textures` what other comments seem to name,
+    `unknown` the places of lines without a keyword: some exporters forget the word comment.
     """
 
     format: str
     elements: list[Element]
     textures: list[str]
     likely_textures: list[str]
+    unknown: list[str]
     size: int
 
 
@@ -81,7 +84,7 @@ def read_ply(data: bytes, name: str, folder: Folder) -> TexturedMesh:
     _read_elements(header, data, name)
     elements = {element.name: element for element in header.elements}
     vertex, face = elements.get("vertex"), elements.get("face")
-    warnings: list[str] = []
+    warnings = [f"{place}: left out a line of the header" for place in header.unknown]
     if face is None and "tristrips" in elements:
         face = _without_strips(elements["tristrips"])
     if vertex is None or face is None:
@@ -104,9 +107,12 @@ def parse_header(data: bytes, name: str) -> Header:
     end = _END.search(data)
     if not data.startswith(b"ply") or end is None:
         raise MeshError(f"{name}: expected a header from 'ply' to 'end_header', found none")
-    header = Header("", [], [], [], end.end())
+    header = Header("", [], [], [], [], end.end())
     for number, line in enumerate(data[: end.start()].splitlines(), 1):
         words = wavefront.text(line).split()
+        if words and words[0] not in _KEYWORDS:
+            header.unknown.append(f"{name}:{number}")
+            continue
         try:
             _header_line(header, words, line)
         except (ValueError, LookupError) as why:
