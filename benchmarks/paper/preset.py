@@ -1,6 +1,6 @@
 """The `paper` preset on one asset, with its curve: held-out error against steps and seconds.
 
-    python -m benchmarks.paper.preset ../shared/assets/spot/spot.obj
+    python -m benchmarks.paper.preset ../shared/assets/spot/spot.obj [--keep spot.nisp]
 
 The paper trains on 2 x 10^9 samples a network; the preset stops where some twenty minutes on two
 cores end. Writes the curve, the held-out measurements and the size beside the published numbers.
@@ -48,18 +48,21 @@ class Curve:
             known.append((update.step, round(time.monotonic() - self.started, 1), update.error))
 
 
-def measure(source: Path, steps: int) -> Record:
-    """Encode with the preset; no textures, as sizes are of networks and tables."""
+def measure(source: Path, steps: int, keep: Path | None) -> Record:
+    """Encode with the preset; `keep`: where to write the file, which has the textures too."""
     training = TrainConfig(paper=PaperConfig(steps=steps))
     curve = Curve()
-    config = nispcodec.EncodeConfig(preset="paper", textures=False)
+    config = nispcodec.EncodeConfig(preset="paper")
     model = nispcodec.encode(load_mesh(source), config, curve, Tuning(training=training))
+    if keep is not None:
+        nispcodec.save(model, keep)
+    images = sum(len(each.data) for each in model.document.textures)
     return {
         "asset": source.stem,
         "steps": steps,
         "samples_per_network": steps * 2048,
         "seconds": round(time.monotonic() - curve.started, 1),
-        "bytes": len(pack(model.document)),
+        "bytes": len(pack(model.document)) - images,
         "measured": dict(model.document.info),
         "published": PUBLISHED,
         "curve": {name: points for name, points in curve.points.items() if points},
@@ -70,13 +73,14 @@ def measure(source: Path, steps: int) -> Record:
 @click.argument("source", type=click.Path(path_type=Path, exists=True))
 @click.option("-o", "--output", type=click.Path(path_type=Path), default=RESULTS, show_default=True)
 @click.option("--steps", type=click.IntRange(1), default=PaperConfig.steps, show_default=True)
-def main(source: Path, output: Path, steps: int) -> None:
+@click.option("--keep", type=click.Path(path_type=Path), help="Where to write the file as well.")
+def main(source: Path, output: Path, steps: int, keep: Path | None) -> None:
     """Run the preset on SOURCE and write the JSON."""
     result = {
         "commit": commit(),
         "machine": machine(),
         "versions": versions(),
-        **measure(source, steps),
+        **measure(source, steps, keep),
     }
     write_result(output, result)
     click.echo(as_json({key: value for key, value in result.items() if key != "curve"}))
