@@ -18,13 +18,14 @@ import click
 import numpy as np
 
 import nispcodec
+from benchmarks.measuring.likeness import likeness as alike
 from benchmarks.measuring.model_records import measured, models_options
 from benchmarks.measuring.process import run
 from benchmarks.measuring.result_file import Record
 from benchmarks.measuring.target import Asked, Target, asked_of_each
+from benchmarks.paper.published import VIEWS as PUBLISHED
 from nispcodec.core.arrays import Float32Array
 from nispcodec.io.load import load_mesh
-from nispcodec.metrics.pictures import compare_pictures
 from nispcodec.model import NispModel
 from nispcodec.render.camera import turntable
 from nispcodec.render.fragments import Scene
@@ -38,7 +39,6 @@ VIEWS, SIZE = 8, 512
 SILHOUETTES = 2
 # Of the decoded mesh whose silhouette is compared: pixels at SIZE are as large.
 RESOLUTION = 512
-PAPER = {"mse": 2.95, "psnr": 43.85, "ssim": 0.996}
 PRECISE = ("spot", "food_apple_01", "chess_king")
 
 TARGETS = {
@@ -80,11 +80,8 @@ def likeness(original: Scene, model: Scene) -> Record:
 def _compared(first: Float32Array, second: Float32Array) -> dict[str, float]:
     squares = (first.astype(np.float64) - second) ** 2
     covered = (np.minimum(first, second) < 1).any(axis=2)
-    return {
-        **compare_pictures(first, second),
-        "mse": 255**2 * float(squares.mean()),
-        "psnr_of_covered": float(-10 * np.log10(max(squares[covered].mean(), 1e-20))),
-    }
+    of_covered = float(-10 * np.log10(max(squares[covered].mean(), 1e-20)))
+    return {**alike(first, second), "psnr_of_covered": of_covered}
 
 
 def silhouette(original: Scene, decoded: Scene, model: Scene) -> Record:
@@ -142,7 +139,9 @@ def measure(path: Path, source: Path) -> Record:
 @models_options(RESULTS)
 def main(models: Path, assets: Path, only: tuple[str, ...], output: Path) -> None:
     """Measure every NAME.nisp in MODELS and print asked against measured."""
-    for name, record in measured(models, assets, only, output, measure, paper=PAPER).items():
+    for name, record in measured(
+        models, assets, only, output, measure, paper=PUBLISHED["ours"]
+    ).items():
         for part in ("pictures", "silhouette"):
             values = ", ".join(f"{key} {value:.4g}" for key, value in record[part].items())
             click.echo(f"{name:<18}{part}: {values}")

@@ -1,4 +1,4 @@
-"""Measure what is cheap, take the rest from the main benchmark's points, write table and JSON."""
+"""Measure what is cheap, take the rest from committed results, write table and JSON."""
 
 from __future__ import annotations
 
@@ -9,13 +9,14 @@ from pathlib import Path
 
 import click
 
+from benchmarks.headline.main_job import RESULTS as MAIN_JOB
 from benchmarks.measuring.machine import commit, machine, versions
-from benchmarks.measuring.result_file import Record, write_result
+from benchmarks.measuring.result_file import Record, read_result, write_result
 from benchmarks.paper.quality import quality
 from benchmarks.paper.queries import queries
 from benchmarks.paper.row import Comparison
 from benchmarks.paper.sizes import sizes
-from benchmarks.rate_distortion.store import Store
+from benchmarks.paper.views import views
 from nispcodec.core.atomic_write import write_atomic
 
 HEAD = "# The paper's numbers beside ours\n\nWritten by `python -m benchmarks.paper`.\n"
@@ -37,14 +38,10 @@ def markdown(rows: Sequence[Comparison]) -> str:
 
 
 @click.command()
-@click.option("--points", type=click.Path(path_type=Path), default="build/bench/points")
 @click.option("-o", "--output", type=click.Path(path_type=Path), default="benchmarks/results")
-def main(points: Path, output: Path) -> None:
-    """Write paper.json and paper.md into a folder.
-
-    Training, distortion and pictures need points of `python -m benchmarks --codec nisp`.
-    """
-    rows = [*sizes(), *queries(), *quality(Store(points))]
+def main(output: Path) -> None:
+    """Write paper.json and paper.md into a folder."""
+    rows = [*sizes(), *queries(), *quality(read_result(MAIN_JOB)), *views()]
     record: Record = {"commit": commit(), "machine": machine(), "versions": versions()}
     write_result(output / "paper.json", record | {"rows": [asdict(row) for row in rows]})
     write_atomic(output / "paper.md", markdown(rows).encode())

@@ -21,6 +21,7 @@ import numpy as np
 
 import nispcodec
 from benchmarks.measuring.field_of import field_of
+from benchmarks.measuring.likeness import mean_likeness
 from benchmarks.measuring.model_records import measured, models_options
 from benchmarks.measuring.result_file import Record
 from benchmarks.measuring.target import Asked, Target
@@ -37,7 +38,6 @@ from nispcodec.infer.evaluate import evaluate
 from nispcodec.io.load import load_mesh
 from nispcodec.metrics.color import color_at
 from nispcodec.metrics.parameterization import distortion_summary
-from nispcodec.metrics.pictures import compare_pictures
 from nispcodec.metrics.psnr import psnr
 from nispcodec.metrics.sides import sides_of
 from nispcodec.metrics.surface import Surface
@@ -201,20 +201,14 @@ def compared(
         off = np.clip(paint(places), 0, 1).astype(np.float64) - wanted
         drawn = [each.painted(paint) for each in sights]
         columns.append(drawn[0])
-        numbers[name] = {"color_psnr": psnr(float((off**2).mean()), 1.0), **_means(truth, drawn)}
+        alike = {f"picture_{key}": each for key, each in mean_likeness(truth, drawn).items()}
+        numbers[name] = {"color_psnr": psnr(float((off**2).mean()), 1.0), **alike}
     distortion = {
         "original": distortion_summary(surface),
         "ours": distortion_summary(_decoded(model)),
         "unconditioned": distortion_summary(_decoded(free)),
     }
     return {**numbers, "distortion": distortion}, np.concatenate(columns, axis=1)
-
-
-def _means(truth: list[Float32Array], drawn: list[Float32Array]) -> dict[str, float]:
-    found = [compare_pictures(*pair) for pair in zip(truth, drawn, strict=True)]
-    mse = [255**2 * float(((a - b) ** 2).mean()) for a, b in zip(truth, drawn, strict=True)]
-    means = {name: float(np.mean([each[name] for each in found])) for name in found[0]}
-    return {"picture_mse": float(np.mean(mse)), **{f"picture_{k}": v for k, v in means.items()}}
 
 
 def _decoded(model: NispModel) -> Surface:

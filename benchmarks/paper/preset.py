@@ -15,6 +15,7 @@ import click
 
 import nispcodec
 from benchmarks.measuring.machine import commit, machine, versions
+from benchmarks.measuring.rate import geometry_bytes
 from benchmarks.measuring.result_file import Record, as_json, write_result
 from nispcodec.core.progress import Progress
 from nispcodec.encode.config import Tuning
@@ -56,13 +57,12 @@ def measure(source: Path, steps: int, keep: Path | None) -> Record:
     model = nispcodec.encode(load_mesh(source), config, curve, Tuning(training=training))
     if keep is not None:
         nispcodec.save(model, keep)
-    images = sum(len(each.data) for each in model.document.textures)
     return {
         "asset": source.stem,
         "steps": steps,
         "samples_per_network": steps * 2048,
         "seconds": round(time.monotonic() - curve.started, 1),
-        "bytes": len(pack(model.document)) - images,
+        "bytes": geometry_bytes(pack(model.document)),
         "measured": dict(model.document.info),
         "published": PUBLISHED,
         "curve": {name: points for name, points in curve.points.items() if points},

@@ -79,7 +79,12 @@ RESULTS = (
     CommittedResult(
         "paper.json",
         "benchmarks.paper",
-        (*ROUND_TRIP, *RENDER),
+        (*FORMAT, *INFER),
+        made_from=(
+            "main_job.json",
+            "paper_rendered_views.json",
+            "paper_synthesized_views.json",
+        ),
         beside=("paper.md",),
         asks="benchmarks.paper.command",
     ),
@@ -90,6 +95,12 @@ RESULTS = (
     CommittedResult("batch_chaos.json", "benchmarks.catalogue.chaos", (*CORE, *CATALOGUE)),
     CommittedResult("paper_preset.json", "benchmarks.paper.preset", ENCODE),
     CommittedResult("paper_pictures.json", "benchmarks.paper.pictures", (*ROUND_TRIP, *RENDER)),
+    CommittedResult(
+        "paper_rendered_views.json", "benchmarks.paper.rendered_views", (*ROUND_TRIP, *RENDER)
+    ),
+    CommittedResult(
+        "paper_synthesized_views.json", "benchmarks.paper.synthesized_views", (*ROUND_TRIP, *RENDER)
+    ),
     CommittedResult("pruning.json", "benchmarks.paper.pruning", (*TRAIN, *FORMAT)),
     CommittedResult("bits.json", "benchmarks.studies.bits", ENCODE),
     CommittedResult("codings.json", "benchmarks.studies.codings", FORMAT),

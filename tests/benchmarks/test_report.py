@@ -8,6 +8,7 @@ import pytest
 
 pytest.importorskip("matplotlib", reason="plots: extra `bench`")
 
+from benchmarks.measuring.result_file import Record
 from benchmarks.paper.command import markdown
 from benchmarks.paper.quality import quality
 from benchmarks.paper.row import Comparison
@@ -59,8 +60,28 @@ def test_paper_table_says_what_differs() -> None:
     assert "What differs: the machine." in text
 
 
-def test_paper_quality_wants_points(tmp_path: Path) -> None:
-    assert list(quality(Store(tmp_path))) == []
+def encoded(seconds: float, accuracy: float | None, psnr: float | None) -> Record:
+    """A record of the main job, as far as the paper's tables read it."""
+    measured = {} if accuracy is None else {"chart_accuracy": accuracy}
+    distortion = dict.fromkeys(("mean", "max", "std"), 4.0)
+    pictures = {} if psnr is None else {"pictures": {"psnr": psnr, "ssim": 0.99}}
+    sides = dict.fromkeys(("original", "decoded"), distortion)
+    return {
+        "encode": {"seconds": seconds},
+        "report": {"measured": measured},
+        "metrics": {"parameterization": sides, **pictures},
+    }
+
+
+def test_paper_quality_is_of_the_assets_that_have_it() -> None:
+    assets = {"a": encoded(1800, 0.9, None), "b": encoded(5400, None, 40.0)}
+    rows = {row.quantity: row for row in quality({"assets": assets})}
+    assert rows["all networks"].ours == 1.0
+    assert rows["chart accuracy"].ours == 0.9
+    assert "uv error mean" not in rows
+    assert rows["PSNR"].ours == 40.0
+    assert rows["PSNR"].differs.endswith("over b")
+    assert rows["mean, learned"].differs.endswith("over a, b")
 
 
 def test_a_codec_that_was_installed_later_is_no_longer_skipped() -> None:
