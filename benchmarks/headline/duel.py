@@ -6,7 +6,8 @@
 The rivals' points are those that `python -m benchmarks.rate_distortion.rivals` has measured. Their
 bytes are the fewest of all settings whose mean distance is no larger than ours, and of those whose
 mean UV error is no larger either; and where the front of the latter, straight between settings in
-logarithms, has our distance. Their color is the best of all settings with no more bytes.
+logarithms, has our distance. Their color is the best of all settings with no more bytes. Where the
+main job ran with several seeds, numbers are means over them, `seeds` how far they went apart.
 """
 
 from __future__ import annotations
@@ -41,6 +42,16 @@ TARGETS = [
 
 Duel = dict[str, Any]
 Mean = Callable[[Sequence[float]], float]
+
+
+def geometric_mean(values: Sequence[float]) -> float:
+    """The geometric mean of numbers above 0."""
+    return float(np.exp(np.mean(np.log(values))))
+
+
+def arithmetic_mean(values: Sequence[float]) -> float:
+    """The mean of numbers."""
+    return float(np.mean(values))
 
 
 def our_rows(records: Mapping[str, Any]) -> list[Row]:
@@ -81,6 +92,39 @@ def duel(rows: Sequence[Row], asset: str) -> Duel:
     }
 
 
+def over_seeds(found: Sequence[Duel]) -> Duel:
+    """One asset's duels, one a seed, as one: means, of shares geometric; None where one has none.
+
+    `seeds` has their number, and the least and largest share and color.
+    """
+    merged: Duel = merge(found)
+    merged["seeds"] = {
+        "count": len(found),
+        "share": extremes([each["share"][BETWEEN] for each in found]),
+        "color_above": extremes([each["color_above"] for each in found]),
+    }
+    return merged
+
+
+def merge(found: Sequence[Any], mean: Mean = arithmetic_mean) -> Any:
+    """Records of the same keys as one, with the means of their numbers; sizes stay whole."""
+    first = found[0]
+    if isinstance(first, Mapping):
+        return {
+            name: merge([e[name] for e in found], geometric_mean if name == "share" else mean)
+            for name in first
+        }
+    if any(each is None for each in found):
+        return None
+    return round(mean(found)) if isinstance(first, int) else mean(found)
+
+
+def extremes(values: Sequence[float | None]) -> list[float] | None:
+    """The least and the largest, or None where one is missing."""
+    known = [value for value in values if value is not None]
+    return [min(known), max(known)] if len(known) == len(values) else None
+
+
 def between(theirs: Sequence[Row], ours: Row) -> int | None:
     """Bytes where the front of the settings with no larger UV error has our distance."""
     good = [each for each in theirs if each["uv"] is not None and each["uv"] <= ours["uv"]]
@@ -99,11 +143,6 @@ def mean_share(table: Mapping[str, Duel], assets: Sequence[str], demand: str) ->
     return over([share for share in shares if share is not None], geometric_mean)
 
 
-def geometric_mean(values: Sequence[float]) -> float:
-    """The geometric mean of numbers above 0."""
-    return float(np.exp(np.mean(np.log(values))))
-
-
 def over(values: Sequence[float], mean: Mean) -> float | None:
     """A mean, or None of nothing."""
     return mean(values) if values else None
@@ -120,7 +159,7 @@ def summarized(table: Mapping[str, Duel]) -> Record:
         for demand in (*DEMANDS, BETWEEN)
     }
     above = [each["color_above"] for each in table.values() if each["color_above"] is not None]
-    color = {"mean": over(above, lambda values: float(np.mean(values))), "worst": over(above, min)}
+    color = {"mean": over(above, arithmetic_mean), "worst": over(above, min)}
     return {"means": means, "color": color}
 
 
@@ -134,9 +173,18 @@ def asked(results: Record) -> Iterator[Asked]:
 @click.option("-o", "--output", type=click.Path(path_type=Path), default=RESULTS, show_default=True)
 def main(points: Path, output: Path) -> None:
     """Print the table and write it as JSON."""
-    records = read_result(MAIN_JOB)["assets"]
-    rows = [*from_csv(points.read_text(encoding="utf-8")), *our_rows(records)]
-    table = {name: duel(rows, name) for name in records}
+    theirs, measured = from_csv(points.read_text(encoding="utf-8")), read_result(MAIN_JOB)
+    by_seed = [measured["assets"], *measured.get("seeds", {}).values()]
+    table = {
+        name: over_seeds(
+            [
+                duel([*theirs, *our_rows({name: records[name]})], name)
+                for records in by_seed
+                if name in records
+            ]
+        )
+        for name in measured["assets"]
+    }
     results = {"commit": commit(), "assets": table, **summarized(table)}
     for name, found in table.items():
         click.echo(f"{name:<24}{found['bytes']:>8,}  {found['rival_bytes']}  {found['share']}")

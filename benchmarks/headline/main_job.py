@@ -1,8 +1,9 @@
 """The main job on real assets, through the real command line: asked against measured.
 
-    python -m benchmarks.headline.main_job --assets ../shared/assets [--only spot]
+    python -m benchmarks.headline.main_job --assets ../shared/assets [--only spot] [--seed 1]
 
-Results are kept asset by asset: an interrupted run goes on where it stopped.
+Results are kept asset by asset: an interrupted run goes on where it stopped. Those of other seeds
+than 0 are kept beside, under `seeds`.
 """
 
 from __future__ import annotations
@@ -132,9 +133,18 @@ def attempt(source: Path, keep: Path | None, preset: str, seed: int) -> Record:
         return {"commit": commit(), "failure": f"{type(error).__name__}: {error}"}
 
 
-def store(path: Path, records: dict[str, Record]) -> None:
+def of_seed(results: Record, seed: int) -> dict[str, Record]:
+    """The records of one seed, to be added to: changes `results` where there are none yet."""
+    if seed == 0:
+        records: dict[str, Record] = results.setdefault("assets", {})
+        return records
+    records = results.setdefault("seeds", {}).setdefault(str(seed), {})
+    return records
+
+
+def store(path: Path, results: Record) -> None:
     """Write all results so far, whole or not at all."""
-    write_result(path, {"machine": machine(), "versions": versions(), "assets": records})
+    write_result(path, {**results, "machine": machine(), "versions": versions()})
 
 
 @click.command()
@@ -155,7 +165,8 @@ def main(
     output: Path,
 ) -> None:
     """Run the main job on every asset and print asked against measured."""
-    records = result_so_far(output).get("assets", {})
+    results = result_so_far(output)
+    records = of_seed(results, seed)
     for source in sorted(assets.glob("*/*.obj")):
         name = source.stem
         done = name in records and "failure" not in records[name]
@@ -163,7 +174,7 @@ def main(
             continue
         click.echo(f"{name} ...", err=True)
         records[name] = attempt(source, keep, preset, seed)
-        store(output, records)
+        store(output, results)
         click.echo(table({name: records[name]}), err=True)
     click.echo(table(records))
 

@@ -11,6 +11,7 @@ and the sizes of the other codecs. Each table says at which commit its numbers w
 from __future__ import annotations
 
 import csv
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
@@ -135,7 +136,21 @@ def means_line(found: Record) -> str:
     return (
         f"\nOurs / theirs in the geometric mean: {means['four']:.2f} over {', '.join(PRECISE)}; "
         f"{means['all']:.2f} over all that can be compared; the worst is {means['worst']:.2f}. "
-        f"Color: {color['mean']:+.1f} dB in the mean, {color['worst']:+.1f} dB the worst.\n"
+        f"Color: {color['mean']:+.1f} dB in the mean, {color['worst']:+.1f} dB the worst. "
+        f"{seeds_line(found['assets'].values())}\n"
+    )
+
+
+def seeds_line(duels: Iterable[dict[str, Any]]) -> str:
+    """Of how many seeds the numbers are, and how far the share goes apart between them."""
+    seeds = [duel["seeds"] for duel in duels]
+    count = min(each["count"] for each in seeds)
+    if count == 1:
+        return "One seed."
+    shares = {each["share"][1] / each["share"][0] for each in seeds if each["share"]}
+    return (
+        f"Means of {count} seeds; ours / theirs of the worst seed of an asset is up to "
+        f"{max(shares) - 1:.0%} above that of its best."
     )
 
 

@@ -11,6 +11,7 @@ from benchmarks.report.document import (
     introduced,
     percentage,
     replaced,
+    seeds_line,
     size_of,
     written,
 )
@@ -34,6 +35,14 @@ def test_a_line_says_what_share_of_the_rival_we_are_and_whose_color_is_better() 
     shares = {"distance": 0.5, "distance and uv": 0.48, "between settings": 0.5}
     duel = {"bytes": 9500, "rival_bytes": sizes, "share": shares, "color_above": -1.25}
     assert duel_cells("a", duel) == ["a", "9.5", "19.0", "20.0", "19.0", "0.50", "-1.2"]
+
+
+def test_the_seeds_and_their_spread_are_said() -> None:
+    one, apart = {"count": 1, "share": None}, {"count": 3, "share": [0.5, 0.6]}
+    assert seeds_line([{"seeds": one}, {"seeds": apart}]) == "One seed."
+    spread = seeds_line([{"seeds": apart}, {"seeds": {"count": 3, "share": None}}])
+    assert spread.startswith("Means of 3 seeds;")
+    assert "20% above" in spread
 
 
 def test_other_codecs_are_shown_where_they_are_measured() -> None:

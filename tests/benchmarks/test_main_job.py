@@ -89,6 +89,10 @@ def test_one_failure_does_not_stop_the_rest_and_results_are_kept(
     assert seen == ["alpha", "beta", "alpha"]
     CliRunner().invoke(main, [*arguments, "--again", "--only", "beta"])
     assert seen[3:] == ["beta"]
+    CliRunner().invoke(main, [*arguments, "--seed", "2", "--only", "beta"])
+    assert seen[4:] == ["beta"]
+    assert json.loads(out.read_text()).keys() >= {"assets", "seeds"}
+    assert json.loads(out.read_text())["seeds"] == {"2": {"beta": RECORD}}
 
 
 def test_machine_is_described() -> None:
