@@ -2,7 +2,7 @@
 export class DisjointSets {
   /** @param {number} count */
   constructor(count) {
-    this.parent = Int32Array.from({ length: count }, (_, i) => i);
+    this.parent = new Int32Array(count).map((_, i) => i);
   }
 
   /** @param {number} i */

@@ -1,5 +1,5 @@
 import { DisjointSets } from "../decoder/groups.js";
-import { cross, dot, sideAfter } from "../decoder/mesh/integers.js";
+import { cross, sideAfter } from "../decoder/mesh/integers.js";
 import { cornerOrder, matrixOf, placer } from "../evaluate/placed.js";
 import { EXTRACTION } from "./config.js";
 
@@ -182,4 +182,9 @@ class GroupedFaces {
     });
     return { indices, groups };
   }
+}
+
+/** @param {number[]} a @param {number[]} b */
+function dot(a, b) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }

@@ -31,8 +31,8 @@ export class BitDecoder {
     this.range = 2 ** 32 - 1;
     this.code = 0;
     while (this.at < 4) this.code = this.code * 256 + (data[this.at++] ?? 0);
-    /** Counters by slot and context, each a probability times 256 plus bits seen; 0 is a new one. @type {Int32Array[]} */
-    this.counters = Array.from({ length: 3 * SLOTS_END }, () => NONE);
+    /** Counters by slot and context, each a probability times 256 plus bits seen; 0 is a new one. @type {number[][]} */
+    this.counters = Array.from({ length: 3 * SLOTS_END }, () => []);
     this.weights = new Float64Array(3 * SLOTS_END).fill(20000);
     this.longer = 0;
   }
@@ -56,36 +56,29 @@ export class BitDecoder {
     return bit;
   }
 
-  /** @param {number} table @param {number} context @param {number} first what a new one is */
-  counter(table, context, first) {
-    let counters = this.counters[table];
-    if (context >= counters.length) {
-      counters = new Int32Array(2 ** bitLength(context));
-      counters.set(this.counters[table]);
-      this.counters[table] = counters;
-    }
-    counters[context] ||= first;
-    return counters[context];
-  }
-
   /** @param {number} slot @param {number} [general] @param {number} [medium] @param {number} [special] contexts */
   bit(slot, general = 0, medium = 0, special = 0) {
     const at = 3 * slot;
-    const { weights } = this;
-    const a = this.counter(at, general, PRIORS[slot] ? PRIORS[slot] * 65536 + 4 : 32768 * 256);
+    const { weights, counters } = this;
+    const one = counters[at];
+    const two = counters[at + 1];
+    const three = counters[at + 2];
+    const a = counterOf(one, general) || (PRIORS[slot] ? PRIORS[slot] * 65536 + 4 : 32768 * 256);
     const begun = a - (a & 255) + 1;
-    const b = this.counter(at + 1, medium, begun);
-    const c = this.counter(at + 2, special, begun);
-    const [x, y, z] = [STRETCH[a >> 12], STRETCH[b >> 12], STRETCH[c >> 12]];
+    const b = counterOf(two, medium) || begun;
+    const c = counterOf(three, special) || begun;
+    const x = STRETCH[a >> 12];
+    const y = STRETCH[b >> 12];
+    const z = STRETCH[c >> 12];
     const p = squash(Math.floor((weights[at] * x + weights[at + 1] * y + weights[at + 2] * z) / 65536));
     const bit = this.divide(p);
     const error = 65535 * bit - p;
     weights[at] += (x * error * 10 + 32768) >> 16;
     weights[at + 1] += (y * error * 10 + 32768) >> 16;
     weights[at + 2] += (z * error * 10 + 32768) >> 16;
-    this.counters[at][general] = moved(a, bit);
-    this.counters[at + 1][medium] = moved(b, bit);
-    this.counters[at + 2][special] = moved(c, bit);
+    one[general] = moved(a, bit);
+    two[medium] = moved(b, bit);
+    three[special] = moved(c, bit);
     return bit;
   }
 
@@ -174,7 +167,11 @@ export class BitDecoder {
   }
 }
 
-const NONE = new Int32Array(0);
+/** @param {number[]} counters @param {number} context */
+function counterOf(counters, context) {
+  while (counters.length <= context) counters.push(0);
+  return counters[context];
+}
 
 /** A counter after one more bit. @param {number} counter @param {number} bit */
 function moved(counter, bit) {

@@ -191,7 +191,7 @@ function placeOf(list, number) {
 
 /** The vertex of each point. @param {import("./bits.js").BitDecoder} bits @param {number} points */
 export function readVertices(bits, points) {
-  const found = Int32Array.from({ length: points }, (_, i) => i);
+  const found = new Int32Array(points).map((_, i) => i);
   if (!bits.bit(HAS_COPIES)) return found;
   let [count, copy] = [0, 0];
   for (let point = 0; point < points; point++) {

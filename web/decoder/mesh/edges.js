@@ -1,24 +1,25 @@
-import { cross, dot, shortened, sideAfter } from "./integers.js";
+import { cross, product, shortened, sideAfter, wayBetween } from "./integers.js";
 
 /**
  * How sharp the edge at each side is: from 0, at least a right angle, to 8, flat; 9 at borders.
  * @param {Int32Array} corners vertices (3 m) @param {Int32Array} twin (3 m) @param {Int32Array} places (3 n)
  */
 export function bendsOf(corners, twin, places) {
-  /** @type {number[][]} */
-  const normals = [];
+  const normals = new Int32Array(corners.length);
   for (let at = 0; at < corners.length; at += 3) {
-    const [u, v] = [1, 2].map((i) =>
-      shortened([0, 1, 2].map((axis) => places[3 * corners[at + i] + axis] - places[3 * corners[at] + axis]), 10),
-    );
-    normals.push(shortened(cross(u, v), 10));
+    const u = shortened(wayBetween(places, corners[at], corners[at + 1]), 10);
+    const v = shortened(wayBetween(places, corners[at], corners[at + 2]), 10);
+    normals.set(shortened(cross(u, v), 10), at);
   }
-  return Uint8Array.from(twin, (other, side) => {
+  const bends = twin.map((other, side) => {
     if (other < 0) return 9;
-    const [m, n] = [normals[Math.floor(side / 3)], normals[Math.floor(other / 3)]];
-    const [aligned, both] = [dot(m, n), dot(m, m) * dot(n, n)];
+    const m = side - (side % 3);
+    const n = other - (other % 3);
+    const aligned = product(normals, m, n);
+    const both = product(normals, m, m) * product(normals, n, n);
     return aligned > 0 && both ? Math.floor((8 * aligned * aligned) / both) : 0;
   });
+  return new Uint8Array(bends);
 }
 
 /**

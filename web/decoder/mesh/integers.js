@@ -17,8 +17,10 @@ export function quarterOf(scale) {
 
 /** Integers without so many of their last bits that `bits` are enough for each. @param {number[]} values @param {number} bits */
 export function shortened(values, bits) {
-  const unit = 2 ** Math.max(bitLength(Math.max(...values.map(Math.abs))) - bits, 0);
-  return values.map((value) => Math.floor(value / unit));
+  let most = 0;
+  for (let i = 0; i < values.length; i++) most = Math.max(most, Math.abs(values[i]));
+  const spare = bitLength(most) - bits;
+  return spare > 0 ? values.map((value) => Math.floor(value / 2 ** spare)) : values;
 }
 
 /** @param {number} square an integer below 2^52 */
@@ -26,14 +28,32 @@ export function rootOf(square) {
   return Math.floor(Math.sqrt(square));
 }
 
-/** @param {number[]} a @param {number[]} b */
-export function dot(a, b) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+/** The product of two vectors in a list. @param {ArrayLike<number>} list @param {number} i @param {number} j where they begin */
+export function product(list, i, j) {
+  return list[i] * list[j] + list[i + 1] * list[j + 1] + list[i + 2] * list[j + 2];
+}
+
+/** @param {Int32Array} places (3 n) @param {number} from @param {number} to */
+export function wayBetween(places, from, to) {
+  const [i, j] = [3 * from, 3 * to];
+  return [places[j] - places[i], places[j + 1] - places[i + 1], places[j + 2] - places[i + 2]];
 }
 
 /** @param {number[]} a @param {number[]} b */
 export function cross(a, b) {
   return [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
+}
+
+/** From the least to the greatest of nodes' values along an axis. @param {Int32Array} values (width n) @param {number} width @param {number} axis @param {number[]} nodes or -1 */
+export function spreadOf(values, width, axis, nodes) {
+  let [low, high] = [Infinity, -Infinity];
+  for (let i = 0; i < nodes.length; i++) {
+    if (nodes[i] < 0) continue;
+    const value = values[width * nodes[i] + axis];
+    low = Math.min(low, value);
+    high = Math.max(high, value);
+  }
+  return [low, high];
 }
 
 /** The side of the same face so many steps on. @param {number} side @param {number} [steps] 1 or 2 */

@@ -90,7 +90,7 @@ function readSheets(bits, twin) {
   const count = bodies.reduce((most, body) => Math.max(most, body), 0) + 1;
   let last = 0;
   const sheets = Array.from({ length: count }, () => (last = bits.bit(SHEET, last, last, last)));
-  return Uint8Array.from(bodies, (body) => sheets[body]);
+  return new Uint8Array(bodies.map((body) => sheets[body]));
 }
 
 /**
@@ -98,7 +98,7 @@ function readSheets(bits, twin) {
  * @param {import("./bits.js").BitDecoder} bits @param {Int32Array} points @param {Int32Array} twin @param {Uint8Array} bends
  */
 function readLines(bits, points, twin, bends) {
-  const seams = Uint8Array.from(twin, (other) => (other < 0 ? 1 : 0));
+  const seams = new Uint8Array(twin.map((other) => (other < 0 ? 1 : 0)));
   const creases = new Uint8Array(twin.length);
   if (bits.bit(HAS_SEAMS)) readEdges(bits, SEAM, points, twin, bends, seams);
   if (bits.bit(HAS_CREASES)) {
@@ -131,7 +131,7 @@ function readCharts(bits, faceCharts) {
  * @param {Int32Array} faceCharts @param {number[]} hasUv @param {number} size
  */
 function readTexture(bits, faces, joined, positions, faceCharts, hasUv, size) {
-  const dressed = Int32Array.from(faces.keys()).filter((corner) => hasUv[faceCharts[Math.floor(corner / 3)]]);
+  const dressed = faces.map((_, corner) => corner).filter((corner) => hasUv[faceCharts[Math.floor(corner / 3)]]);
   const fans = new DisjointSets(faces.length);
   joined.forEach((other, side) => {
     if (other >= 0) fans.join(side, sideAfter(other));

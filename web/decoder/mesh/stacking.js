@@ -8,13 +8,16 @@ const MOST = 16;
  * (section 15.6 of the specification). Each has a number, by when it came first.
  */
 export class Stacking {
-  /** @param {import("./bits.js").BitDecoder} bits */
-  constructor(bits) {
+  /** @param {import("./bits.js").BitDecoder} bits @param {number} most numbers */
+  constructor(bits, most) {
     this.bits = bits;
     /** Coordinates by number, u * 2^20 + v. @type {number[]} */ this.values = [];
     /** @type {Map<number, number>} */ this.numbers = new Map();
     /** @type {Map<number, number[]>} */ this.thirds = new Map();
-    /** Lengths to neighbors, of each. @type {Map<number, number>[]} */ this.near = [];
+    // How many neighbors each has, which they are, and lengths to them.
+    this.neighbors = new Uint8Array(most);
+    this.near = new Int32Array(MOST * most);
+    this.lengths = new Float64Array(MOST * most);
     this.hits = 0;
   }
 
@@ -26,22 +29,23 @@ export class Stacking {
 
   /** One that was beside another at about this length, or -1. @param {number} start @param {number} length */
   beside(start, length) {
-    const known = this.near[start];
-    if (!known.size || !this.bits.bit(BESIDE)) return -1;
-    const off = (/** @type {number} */ each) => Math.abs(/** @type {number} */ (known.get(each)) - length);
-    const ranked = [...known.keys()].sort((a, b) => off(a) - off(b) || this.values[a] - this.values[b]);
+    const { values, near, lengths } = this;
+    if (!this.neighbors[start] || !this.bits.bit(BESIDE)) return -1;
+    const off = (/** @type {number} */ place) => Math.abs(lengths[place] - length);
+    const order = Array.from({ length: this.neighbors[start] }, (_, i) => MOST * start + i);
+    order.sort((a, b) => off(a) - off(b) || values[near[a]] - values[near[b]]);
     const rank = this.bits.signed(RANK, 0, 0, 0, 0);
-    this.bits.demand(rank >= 0 && rank < ranked.length, "uv_rank", `0 to ${ranked.length - 1}`, rank);
-    return ranked[rank];
+    this.bits.demand(rank >= 0 && rank < order.length, "uv_rank", `0 to ${order.length - 1}`, rank);
+    return near[order[rank]];
   }
 
-  /** The one that went with most of these edges, or -1. @param {number[][]} sides ends and the third of the face known */
+  /** The one that went with most of these edges, or -1. @param {number[]} sides three numbers each: ends and the third of the face known */
   beyond(sides) {
     /** @type {Map<number, number>} */
     const votes = new Map();
-    for (const [a, b, own] of sides) {
-      for (const third of this.thirds.get(edgeKey(a, b)) ?? []) {
-        if (third !== own) votes.set(third, (votes.get(third) ?? 0) + 1);
+    for (let i = 0; i < sides.length; i += 3) {
+      for (const third of this.thirds.get(edgeKey(sides[i], sides[i + 1])) ?? []) {
+        if (third !== sides[i + 2]) votes.set(third, (votes.get(third) ?? 0) + 1);
       }
     }
     if (!votes.size) return -1;
@@ -61,22 +65,30 @@ export class Stacking {
     if (number === undefined) {
       number = this.values.push(value) - 1;
       this.numbers.set(value, number);
-      this.near.push(new Map());
     }
     return number;
   }
 
-  /** @param {number} number @param {number[][]} sides @param {number[][]} ends numbers and lengths */
-  note(number, sides, ends) {
-    for (const [one, other] of sides) {
+  /** @param {number} number @param {number[]} sides */
+  noteThirds(number, sides) {
+    for (let i = 0; i < sides.length; i += 3) {
+      const [one, other] = [sides[i], sides[i + 1]];
       this.noteThird(one, other, number);
       this.noteThird(other, number, one);
       this.noteThird(number, one, other);
     }
-    for (const [end, length] of ends) {
-      if (this.near[number].size < MOST) this.near[number].set(end, length);
-      if (this.near[end].size < MOST) this.near[end].set(number, length);
-    }
+  }
+
+  /** @param {number} number @param {number} other what is beside it @param {number} length */
+  noteNear(number, other, length) {
+    const { near, neighbors } = this;
+    if (neighbors[number] === MOST) return;
+    const end = MOST * number + neighbors[number];
+    let place = MOST * number;
+    while (place < end && near[place] !== other) place++;
+    if (place === end) neighbors[number]++;
+    near[place] = other;
+    this.lengths[place] = length;
   }
 
   /** @param {number} a @param {number} b @param {number} third */

@@ -1,7 +1,7 @@
-import { bitLength, dot, quarterOf, rootOf, rounded, shortened } from "./integers.js";
+import { bitLength, product, quarterOf, rootOf, rounded, shortened, spreadOf, wayBetween } from "./integers.js";
 import { DOWN, FLIP, UV, UV_SECOND, UV_START, UV_THIRD } from "./slots.js";
 import { Stacking } from "./stacking.js";
-import { visitsOf } from "./visits.js";
+import { visitAll } from "./visits.js";
 
 /**
  * Where a face over an edge may have its node: u and v, whether a face beyond said how to go on, else
@@ -20,7 +20,7 @@ import { visitsOf } from "./visits.js";
  */
 export function readUvs(bits, corners, twin, places, size) {
   const reader = new UvReader(bits, places, size);
-  for (const visit of visitsOf(corners, twin, places.length / 3)) reader.read(visit);
+  visitAll(corners, twin, places.length / 3, (visit) => reader.read(visit));
   return reader.found;
 }
 
@@ -38,13 +38,13 @@ class UvReader {
     this.wide = 1;
     this.found = new Int32Array((2 * places.length) / 3);
     this.numbers = new Int32Array(places.length / 3);
-    this.stacking = new Stacking(bits);
+    this.stacking = new Stacking(bits, places.length / 3);
   }
 
   /** @param {import("./visits.js").Visit} visit */
   read({ node, hinges, near }) {
     const { stacking, numbers } = this;
-    const sides = hinges.map(([a, b, c]) => [numbers[a], numbers[b], c >= 0 ? numbers[c] : -1]);
+    const sides = hinges.map((each) => (each < 0 ? -1 : numbers[each]));
     let number = -1;
     if (hinges.length) number = stacking.beyond(sides);
     else if (near >= 0) number = stacking.beside(numbers[near], this.distance(node, near));
@@ -58,26 +58,26 @@ class UvReader {
     this.found[2 * node + 1] = value % 2 ** 20;
     numbers[node] = number;
     this.last = node;
-    this.note(node, hinges, near, sides);
+    stacking.noteThirds(number, sides);
+    this.noteEnds(node, hinges.length ? hinges.filter((_, i) => i % 3 < 2) : near >= 0 ? [near] : []);
   }
 
-  /** @param {number} node @param {number[][]} hinges @param {number} near @param {number[][]} sides */
-  note(node, hinges, near, sides) {
-    const ends = new Set(hinges.flatMap(([a, b]) => [a, b]));
-    if (!hinges.length && near >= 0) ends.add(near);
-    const ordered = [...ends].sort((a, b) => a - b);
-    this.stacking.note(this.numbers[node], sides, ordered.map((end) => [this.numbers[end], this.distance(node, end)]));
+  /** @param {number} node @param {number[]} ends */
+  noteEnds(node, ends) {
+    const { stacking, numbers } = this;
+    ends.sort((a, b) => a - b);
+    ends.forEach((end, i) => {
+      if (end === ends[i - 1]) return;
+      const length = this.distance(node, end);
+      stacking.noteNear(numbers[node], numbers[end], length);
+      stacking.noteNear(numbers[end], numbers[node], length);
+    });
   }
 
   /** @param {number} one @param {number} other */
   distance(one, other) {
-    const way = this.way(one, other);
-    return rootOf(dot(way, way));
-  }
-
-  /** @param {number} from @param {number} to */
-  way(from, to) {
-    return [0, 1, 2].map((axis) => this.places[3 * to + axis] - this.places[3 * from + axis]);
+    const way = wayBetween(this.places, one, other);
+    return rootOf(product(way, 0, 0));
   }
 
   /** @param {number[]} expected @param {number} slot @param {number[]} lengths @param {number} sources @param {number[]} apart */
@@ -120,15 +120,19 @@ class UvReader {
     return [u, v];
   }
 
-  /** @param {number} node @param {number[][]} hinges */
+  /** @param {number} node @param {number[]} hinges */
   over(node, hinges) {
-    const guesses = hinges.map(([a, b, c]) => this.guess(node, a, b, c));
+    const guesses = [];
+    for (let i = 0; i < hinges.length; i += 3) guesses.push(this.guess(node, hinges[i], hinges[i + 1], hinges[i + 2]));
     const whole = guesses.filter((each) => each.whole);
     const used = whole.length ? whole : guesses;
     const expected = this.expected(used, !whole.length);
-    const around = [expected, ...hinges.flat().filter((each) => each >= 0).map((each) => this.found.subarray(2 * each, 2 * each + 2))];
-    const spreads = [0, 1].map((axis) => spread(around.map((each) => each[axis])));
-    const lengths = spreads.map((each) => bitLength(Math.floor((3 * each + Math.max(...spreads)) / 64)));
+    const spreads = expected.map((value, axis) => {
+      const [low, high] = spreadOf(this.found, 2, axis, hinges);
+      return Math.max(value, high) - Math.min(value, low);
+    });
+    const widest = Math.max(spreads[0], spreads[1]);
+    const lengths = spreads.map((each) => bitLength((3 * each + widest) >> 6));
     const differ = [spread(used.map(({ u }) => u)), spread(used.map(({ v }) => v))];
     const apart = differ.map((each, i) => Math.min(Math.max(bitLength(each) - lengths[i] + 4, 0), 7));
     return this.both(expected, UV, lengths, Math.min(whole.length, 3), apart);
@@ -136,11 +140,15 @@ class UvReader {
 
   /** The mean of guesses, on that side of edges where a bit says. @param {Guess[]} used @param {boolean} sided */
   expected(used, sided) {
-    const mean = (/** @type {number} */ sign) => [
-      Math.floor(used.reduce((sum, { u, du }) => sum + u + sign * du, 0) / used.length),
-      Math.floor(used.reduce((sum, { v, dv }) => sum + v + sign * dv, 0) / used.length),
-    ];
-    const [one, other] = [mean(1), mean(-1)];
+    let [u, v, du, dv] = [0, 0, 0, 0];
+    for (const each of used) {
+      u += each.u;
+      v += each.v;
+      du += each.du;
+      dv += each.dv;
+    }
+    const mean = (/** @type {number} */ sum) => Math.floor(sum / used.length);
+    const [one, other] = [[mean(u + du), mean(v + dv)], [mean(u - du), mean(v - dv)]];
     if (!sided) return one;
     if (one[0] !== other[0] || one[1] !== other[1]) this.flip = this.bits.bit(FLIP, 0, this.flip, 0);
     return this.flip ? other : one;
@@ -148,32 +156,36 @@ class UvReader {
 
   /** @param {number} node @param {number} a @param {number} b @param {number} c @returns {Guess} */
   guess(node, a, b, c) {
-    const { found } = this;
+    const { found, places } = this;
     const [ua, va] = [found[2 * a], found[2 * a + 1]];
     const [u, v] = [found[2 * b] - ua, found[2 * b + 1] - va];
-    const e = shortened([b, node, c >= 0 ? c : a].flatMap((each) => this.way(a, each)), 10);
-    const edge = e.slice(0, 3);
-    const square = dot(edge, edge);
-    const foot = (/** @type {number[]} */ point) => {
-      const part = dot(edge, point);
-      return [part, rootOf(Math.max(square * dot(point, point) - part * part, 0))];
-    };
-    const [part, height] = foot(e.slice(3, 6));
+    const ways = shortened([b, node, c >= 0 ? c : a].flatMap((to) => wayBetween(places, a, to)), 10);
+    const square = product(ways, 0, 0);
+    const height = (/** @type {number} */ at, /** @type {number} */ part) =>
+      rootOf(Math.max(square * product(ways, at, at) - part * part, 0));
+    const part = product(ways, 0, 3);
     if (Math.abs(part) > 16 * square || square === 0) return { u: ua, v: va, whole: false, du: 0, dv: 0 };
+    const high = height(3, part);
     const [pu, pv] = [ua + rounded(u * part, square), va + rounded(v * part, square)];
     if (c >= 0) {
-      const [beyond, other] = foot(e.slice(6));
-      if (other && other * 4 >= height && Math.abs(beyond) <= 16 * square) {
-        const du = rounded((rounded(u * beyond, square) - found[2 * c] + ua) * height, other);
-        const dv = rounded((rounded(v * beyond, square) - found[2 * c + 1] + va) * height, other);
+      const beyond = product(ways, 0, 6);
+      const other = height(6, beyond);
+      if (other && other * 4 >= high && Math.abs(beyond) <= 16 * square) {
+        const du = rounded((rounded(u * beyond, square) - found[2 * c] + ua) * high, other);
+        const dv = rounded((rounded(v * beyond, square) - found[2 * c + 1] + va) * high, other);
         return { u: pu + du, v: pv + dv, whole: true, du: 0, dv: 0 };
       }
     }
-    return { u: pu, v: pv, whole: false, du: rounded(-v * height, square), dv: rounded(u * height, square) };
+    return { u: pu, v: pv, whole: false, du: rounded(-v * high, square), dv: rounded(u * high, square) };
   }
 }
 
 /** @param {number[]} values */
 function spread(values) {
-  return Math.max(...values) - Math.min(...values);
+  let [low, high] = [values[0], values[0]];
+  for (const value of values) {
+    low = Math.min(low, value);
+    high = Math.max(high, value);
+  }
+  return high - low;
 }
