@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -51,6 +51,13 @@ FEWER = (
     metavar="ERROR",
     help="As few triangles as keep the mean distance to the field's surface below this, in radii.",
 )
+@click.option(
+    "--lods",
+    type=Whole(1, 8),
+    default=1,
+    metavar="LEVELS",
+    help="So many levels of detail, each with a quarter of the triangles: out.glb, out.lod1.glb.",
+)
 @click.option("--colors", is_flag=True, help="Vertex colors instead of textures.")
 @click.option(
     "--rebake",
@@ -79,6 +86,7 @@ def command(
     model: Source,
     output: Path,
     kind: str,
+    lods: int,
     colors: bool,
     rebake: int | None,
     grid: int | None,
@@ -98,14 +106,16 @@ def command(
     \b
     Example: nisp decode model.nisp --mesh -o out.glb
              nisp decode model.nisp --compress meshopt -o small.glb
+             nisp decode model.nisp --lods 3 -o model.glb
              nisp decode model.nisp --grid 128 -o field.npz
     """
-    from nispcodec.io.save import expect_compressible
+    from nispcodec.io.save import expect_compressible, level_paths
     from nispcodec.model import NispModel
 
     expect_compressible(output, compress)
-    if colors and rebake:
-        raise click.UsageError("--colors and --rebake: expected one of them, found both")
+    for other, given in (("--colors", colors), ("--lods", lods > 1)):
+        if rebake and given:
+            raise click.UsageError(f"{other} and --rebake: expected one of them, found both")
     if rebake:
         expect_installed("xatlas", "scipy")
     expect_fitting(output, grid)
@@ -115,36 +125,48 @@ def command(
         with shown("decode", progress, quiet) as listen:
             write_grid(loaded, output, grid, how["resolution"], force, as_json, listen)
         return
-    refuse_overwriting(_planned(loaded, output, colors, bool(rebake)), force)
+    paths = level_paths(output, lods)
+    refuse_overwriting(_planned(loaded, paths, colors, bool(rebake)), force)
     with shown("decode", progress, quiet) as listen:
-        mesh, written = _written(loaded, output, colors, rebake, compress, how, listen)
+        levels = _written(loaded, paths, colors, rebake, compress, how, listen)
     simple = bool(loaded.document.field) and how["faces"] is None and how["error"] is None
-    _told(mesh, output, written, colors, time.monotonic() - started, simple, as_json)
+    _told(levels, colors, time.monotonic() - started, simple, as_json)
 
 
-def _told(
-    mesh: TexturedMesh,
-    output: Path,
-    written: list[Path],
-    colors: bool,
-    seconds: float,
-    simple: bool,
-    as_json: bool,
-) -> None:
+@dataclass(frozen=True)
+class Level:
+    """A mesh that was written, and its files, that of the mesh last."""
+
+    mesh: TexturedMesh
+    files: list[Path]
+
+    def report(self) -> dict[str, Any]:
+        """What is said of it."""
+        counts = {"faces": len(self.mesh.faces), "vertices": len(self.mesh.positions)}
+        return {"file": str(self.files[-1]), **counts, "files": listed(self.files)}
+
+
+def _told(levels: list[Level], colors: bool, seconds: float, simple: bool, as_json: bool) -> None:
     """Print what was lost, and what was written; `simple`: there might be fewer faces."""
     from nispcodec.io.save import losses
 
-    if not colors:
-        mesh = replace(mesh, warnings=(*mesh.warnings, *losses(mesh, output)))
-    warn(mesh.warnings)
-    report = _report(mesh, output, written, seconds)
+    first = levels[0].mesh
+    warnings = [*first.warnings, *(() if colors else losses(first, levels[0].files[-1]))]
+    warn(warnings)
+    finest, *coarser = [each.report() for each in levels]
     if as_json:
-        print_json(report)
-    else:
-        _print_report(report, written, simple)
+        more = {"levels": coarser} if coarser else {}
+        print_json({**finest, "warnings": warnings, "seconds": round(seconds, 1), **more})
+        return
+    for each, report in zip(levels, (finest, *coarser), strict=True):
+        took = f" in {duration(seconds)}" if report is finest else ""
+        click.echo(f"{report['file']}: {report['faces']:,} faces{took}")
+        print_written(each.files, "  ")
+    if simple:
+        click.echo(FEWER)
 
 
-def _planned(model: NispModel, output: Path, colors: bool, rebake: bool) -> list[Path]:
+def _planned(model: NispModel, paths: list[Path], colors: bool, rebake: bool) -> list[Path]:
     """Every file that will be written."""
     from nispcodec.io.save import mesh_paths
 
@@ -152,7 +174,7 @@ def _planned(model: NispModel, output: Path, colors: bool, rebake: bool) -> list
     materials, textures = document.materials, document.textures
     if rebake:
         materials, textures = _rebaked_appearance(model)
-    return mesh_paths(output, materials, textures, colors)
+    return [file for path in paths for file in mesh_paths(path, materials, textures, colors)]
 
 
 def _rebaked_appearance(model: NispModel) -> tuple[tuple[Any, ...], tuple[Any, ...]]:
@@ -168,14 +190,14 @@ def _rebaked_appearance(model: NispModel) -> tuple[tuple[Any, ...], tuple[Any, .
 
 def _written(
     model: NispModel,
-    output: Path,
+    paths: list[Path],
     colors: bool,
     rebake: int | None,
     compress: str | None,
     how: dict[str, Any],
     listen: Listener,
-) -> tuple[TexturedMesh, list[Path]]:
-    """The mesh, and the files that it was written to."""
+) -> list[Level]:
+    """The meshes, in as many levels as there are paths, and the files that they were written to."""
     from nispcodec.core.progress import Progress
     from nispcodec.io.save import write_mesh
 
@@ -183,15 +205,18 @@ def _written(
     listen(Progress(stage="surface", note=note, overall=0.0))
     if rebake and how["faces"] is None and how["error"] is None:
         how = {**how, "faces": REBAKE_FACES}
-    mesh = model.to_mesh(**how)
+    meshes = model.to_lods(len(paths), **how)
     if "name" not in model.document.info:
-        mesh = replace(mesh, name=output.stem)
+        meshes = [replace(mesh, name=paths[0].stem) for mesh in meshes]
     if rebake:
         listen(Progress(stage="atlas", overall=0.5))
-        mesh = baked(model, mesh, rebake)
+        meshes = [baked(model, mesh, rebake) for mesh in meshes]
     listen(Progress(stage="files", overall=0.9))
-    seen = model.color(mesh.positions) if colors else None
-    return mesh, write_mesh(mesh, output, seen, compress)
+    levels = []
+    for mesh, path in zip(meshes, paths, strict=True):
+        seen = model.color(mesh.positions) if colors else None
+        levels.append(Level(mesh, write_mesh(mesh, path, seen, compress)))
+    return levels
 
 
 def expected(model: NispModel, resolution: int | None) -> str:
@@ -236,24 +261,3 @@ def baked(model: NispModel, mesh: TexturedMesh, size: int) -> TexturedMesh:
     # The warning of textures that no longer fit is none here: new ones are made.
     atlas = with_collapsed_named(replace(apart(unwrap, mesh), warnings=mesh.warnings))
     return replace(rebaked(model, atlas, size), warnings=atlas.warnings)
-
-
-def _report(
-    mesh: TexturedMesh, output: Path, written: list[Path], seconds: float
-) -> dict[str, Any]:
-    return {
-        "file": str(output),
-        "faces": len(mesh.faces),
-        "vertices": len(mesh.positions),
-        "files": listed(written),
-        "warnings": list(mesh.warnings),
-        "seconds": round(seconds, 1),
-    }
-
-
-def _print_report(report: dict[str, Any], written: list[Path], simple: bool) -> None:
-    took = duration(report["seconds"])
-    click.echo(f"{report['file']}: {report['faces']:,} faces in {took}")
-    print_written(written, "  ")
-    if simple:
-        click.echo(FEWER)

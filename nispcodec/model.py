@@ -134,6 +134,27 @@ class NispModel:
 
         return textured_mesh(self.document, resolution, faces, error, keep_spurious)[0]
 
+    def to_lods(
+        self,
+        levels: int,
+        resolution: int | None = None,
+        faces: int | None = None,
+        error: float | None = None,
+        keep_spurious: bool = False,
+    ) -> list[TexturedMesh]:
+        """The surface in `levels` of detail from one extraction, the finest first: `to_mesh`'s.
+
+        Each has about a quarter of the triangles of the one before: as many on a pixel from twice
+        as far. Other arguments are those of `to_mesh`. Triangles that the file holds are simplified
+        as the encoder does it, which needs `pip install 'nispcodec[encode]'`. Raises NispError
+        without, QueryError for no level.
+        """
+        from nispcodec.extract.meshing import textured_levels
+
+        if levels < 1:
+            raise QueryError(f"levels: expected at least 1, found {levels}")
+        return textured_levels(self.document, levels, resolution, faces, error, keep_spurious)[0]
+
     def sdf_grid(self, samples: int = 128, resolution: int | None = None) -> SdfGrid:
         """Signed distances on a grid around the asset, world frame: `values()`, `save("x.npz")`.
 

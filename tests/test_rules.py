@@ -26,7 +26,8 @@ RULES: dict[str, tuple[set[str], set[str]]] = {
     "train": ({"numpy", "scipy", "threadpoolctl", "torch"}, {"core", "dataset"}),
     "format": ({"numpy", "msgpack", "zstandard"}, {"core"}),
     "infer": ({"numpy", "threadpoolctl"}, {"core"}),
-    "extract": ({"numpy", "fast_simplification"}, {"core", "infer"}),
+    # Mesh parts in levels of detail are simplified as the encoder does it.
+    "extract": ({"numpy", "fast_simplification"}, {"core", "infer", "simplify"}),
     # A model hands itself to trimesh.
     "model": ({"numpy", "trimesh"}, {"core", "infer", "extract", "io"}),
     "trimesh_loader": ({"trimesh"}, {"core", "io", "format", "model"}),

@@ -179,6 +179,17 @@ class SliverConfig:
 
 
 @dataclass(frozen=True)
+class LevelConfig:
+    """Levels of detail.
+
+    share  of a level's triangles that the next one has: from twice as far, a surface covers a
+           quarter of the pixels
+    """
+
+    share: float = 0.25
+
+
+@dataclass(frozen=True)
 class ExtractConfig:
     """All of them."""
 
@@ -188,3 +199,4 @@ class ExtractConfig:
     seams: SeamConfig = field(default_factory=SeamConfig)
     simplify: SimplifyConfig = field(default_factory=SimplifyConfig)
     slivers: SliverConfig = field(default_factory=SliverConfig)
+    levels: LevelConfig = field(default_factory=LevelConfig)

@@ -16,7 +16,11 @@ from nispcodec.core.placing import placed_points
 
 def joined(document: Document, field: TexturedMesh | None) -> TexturedMesh:
     """The surface of a document's field, if it has one, and its mesh parts; world frame."""
-    pieces = [*([field] if field else []), *_placed(document)]
+    return as_one(document, [*([field] if field else []), *_placed(document)])
+
+
+def as_one(document: Document, pieces: Sequence[TexturedMesh]) -> TexturedMesh:
+    """Pieces of a document's surface, world frame, in one mesh of its materials and textures."""
     positions = _shifts([len(each.positions) for each in pieces])
     uvs = _shifts([len(each.uvs) for each in pieces])
     return TexturedMesh(

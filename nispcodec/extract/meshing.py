@@ -11,16 +11,22 @@ from nispcodec.core.arrays import Int32Array
 from nispcodec.core.asset import TexturedMesh
 from nispcodec.core.document import Document, Field
 from nispcodec.core.network import Network
+from nispcodec.extract.coarser_parts import coarser
 from nispcodec.extract.components import (
     ExtractionReport,
     components,
     without,
     without_noise,
 )
-from nispcodec.extract.config import ExtractConfig, ResolutionConfig, SimplifyConfig
+from nispcodec.extract.config import (
+    ExtractConfig,
+    LevelConfig,
+    ResolutionConfig,
+    SimplifyConfig,
+)
 from nispcodec.extract.grid import CUBE
 from nispcodec.extract.isosurface import Surface, extract, near_surface
-from nispcodec.extract.mesh_parts import joined
+from nispcodec.extract.mesh_parts import as_one, joined
 from nispcodec.extract.seams import cut_along_seams
 from nispcodec.extract.simplify import deviation, simplest, simplified
 from nispcodec.extract.slivers import without_slivers
@@ -46,24 +52,37 @@ def textured_mesh(
     default `negligible_error`. Where only a resolution is given, all triangles of that grid are
     kept. keep_spurious: do not drop noise.
     """
-    whole = sum(len(part.faces) * len(part.placements) for part in document.meshes)
-    if document.field is None:
-        mesh = replace(joined(document, None), warnings=_missed(whole, whole, faces))
-        return mesh, ExtractionReport(0, 0, 0, 0)
-    field = document.field
-    grid, report = field_surface(field, resolution, error, keep_spurious, config)
-    if resolution is None and faces is None and error is None:
-        # What the grid itself is off by cannot be had back.
-        own = deviation(field.sdf, grid, config.simplify.measured)
-        error = max(negligible_error(document.info, config.simplify), own)
-    surface = grid if error is None else simplest(field.sdf, grid, error, config.simplify)
-    if faces is None:
-        cut, charts = _cut(field, surface, surface is not grid, config)
-    else:
-        cut, charts = _with_at_most(field, surface, max(faces - whole, 1), config)
-    mesh = joined(document, _dressed(document, field, *_opened(field, cut, charts, config)))
-    missed = _missed(whole + len(cut.faces), whole, faces)
-    return replace(mesh, warnings=(*report.warnings, *missed)), report
+    meshes, report = textured_levels(document, 1, resolution, faces, error, keep_spurious, config)
+    return meshes[0], report
+
+
+def textured_levels(
+    document: Document,
+    levels: int,
+    resolution: int | None = None,
+    faces: int | None = None,
+    error: float | None = None,
+    keep_spurious: bool = False,
+    config: ExtractConfig = ExtractConfig(),
+) -> tuple[list[TexturedMesh], ExtractionReport]:
+    """The surface in `levels` of detail, from one extraction; the first is that of `textured_mesh`.
+
+    Each has about `LevelConfig.share` of the triangles of the one before. Raises NispError where
+    mesh parts are to be simplified without the packages for that.
+    """
+    parts = joined(document, None) if document.meshes else None
+    whole = len(parts.faces) if parts else 0
+    pieces = [_part_levels(document, parts, levels, config)] if parts else []
+    report = ExtractionReport(0, 0, 0, 0)
+    if document.field:
+        most = None if faces is None else max(faces - whole, 1)
+        found, report = _field_levels(
+            document, document.field, levels, resolution, most, error, keep_spurious, config
+        )
+        pieces.insert(0, found)
+    meshes = [as_one(document, level) for level in zip(*pieces, strict=True)]
+    warnings = (*report.warnings, *_missed(len(meshes[0].faces), whole, faces))
+    return [replace(mesh, warnings=warnings) for mesh in meshes], report
 
 
 def negligible_error(
@@ -121,6 +140,46 @@ def field_surface(
         if given or deviation(sdf, surface) <= (error or 0.0):
             return surface, report
         cells *= 2
+
+
+def _field_levels(
+    document: Document,
+    field: Field,
+    levels: int,
+    resolution: int | None,
+    faces: int | None,
+    error: float | None,
+    keep_spurious: bool,
+    config: ExtractConfig,
+) -> tuple[list[TexturedMesh], ExtractionReport]:
+    """The field's surface in levels; see `textured_levels`."""
+    grid, report = field_surface(field, resolution, error, keep_spurious, config)
+    if resolution is None and faces is None and error is None:
+        # What the grid itself is off by cannot be had back.
+        own = deviation(field.sdf, grid, config.simplify.measured)
+        error = max(negligible_error(document.info, config.simplify), own)
+    surface = grid if error is None else simplest(field.sdf, grid, error, config.simplify)
+    if faces is None:
+        found = [_cut(field, surface, surface is not grid, config)]
+    else:
+        found = [_with_at_most(field, surface, faces, config)]
+    for count in _counts(len(found[0][0].faces), levels, config.levels):
+        found.append(_with_at_most(field, surface, count, config))
+    dressed = (_dressed(document, field, *_opened(field, *cut, config)) for cut in found)
+    return list(dressed), report
+
+
+def _part_levels(
+    document: Document, parts: TexturedMesh, levels: int, config: ExtractConfig
+) -> list[TexturedMesh]:
+    """The mesh parts in levels, the first as they are."""
+    counts = _counts(len(parts.faces), levels, config.levels)
+    return [parts, *(coarser(parts, document.frame, counts) if counts else ())]
+
+
+def _counts(faces: int, levels: int, config: LevelConfig) -> list[int]:
+    """How many faces each level after the first is to have."""
+    return [max(round(faces * config.share**level), 1) for level in range(1, levels)]
 
 
 def _cut(

@@ -124,6 +124,12 @@ def mesh_paths(
     return [path.with_name(name) for name in _files(mesh, path, colors)]
 
 
+def level_paths(path: Path, levels: int) -> list[Path]:
+    """Where levels of detail go: out.glb, then out.lod1.glb, out.lod2.glb, ..."""
+    others = [path.with_name(f"{path.stem}.lod{k}{path.suffix}") for k in range(1, levels)]
+    return [path, *others]
+
+
 def _triangle() -> TexturedMesh:
     """The smallest mesh with UVs."""
     corners = np.arange(3, dtype=np.int32)[None]

@@ -71,8 +71,27 @@ def test_rebake(model: Path, tmp_path: Path) -> None:
     assert mesh.uvs.max() <= 1
 
 
+def test_lods(model: Path, tmp_path: Path) -> None:
+    options = ("--resolution", 48, "--lods", 3, "--json")
+    report = json.loads(done("decode", model, "-o", tmp_path / "out.glb", *options).stdout)
+    names = ["out.glb", "out.lod1.glb", "out.lod2.glb"]
+    assert sorted(path.name for path in tmp_path.glob("out*")) == names
+    meshes = [load_mesh(tmp_path / name) for name in names]
+    assert all(b'"name":"out"' in (tmp_path / name).read_bytes() for name in names)
+    told = [report, *report["levels"]]
+    assert [each["file"] for each in told] == [str(tmp_path / name) for name in names]
+    assert [each["faces"] for each in told] == [len(mesh.faces) for mesh in meshes]
+    again = nisp("decode", model, "-o", tmp_path / "out.lod1.glb", *options)
+    refused(again, "expected no file of this name, found one")
+
+
 def test_contradictions_are_refused(model: Path, tmp_path: Path) -> None:
-    for options in (("--colors", "--rebake"), ("--faces", 2), ("--target-error", 0)):
+    for options in (
+        ("--colors", "--rebake"),
+        ("--lods", 2, "--rebake"),
+        ("--faces", 2),
+        ("--target-error", 0),
+    ):
         refused(nisp("decode", model, "-o", tmp_path / "out.glb", *options), "expected", "found")
     assert not list(tmp_path.glob("out.*"))
 
@@ -80,7 +99,7 @@ def test_contradictions_are_refused(model: Path, tmp_path: Path) -> None:
 def test_colors_that_a_format_cannot_hold_are_refused_before_the_work(
     model: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(NispModel, "to_mesh", None)
+    monkeypatch.setattr(NispModel, "to_lods", None)
     result = nisp("decode", model, "-o", tmp_path / "out.stl", "--colors")
     refused(result, "STL holds no colors")
 

@@ -84,7 +84,7 @@ def test_a_decode_is_refused_before_the_work(
 ) -> None:
     arguments, name = CASES[case]
     (folder / name).write_bytes(MINE)
-    monkeypatch.setattr(NispModel, "to_mesh", None)
+    monkeypatch.setattr(NispModel, "to_lods", None)
     refused(nisp(*arguments), name)
 
 
