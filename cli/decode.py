@@ -76,7 +76,7 @@ FEWER = (
 @click.option(
     "--compress",
     type=LibraryChoice(compressions),
-    help="A smaller GLB, images as they are; draco and meshopt take the extra gltf.",
+    help="A smaller GLB or glTF, images as they are; draco and meshopt take the extra gltf.",
 )
 @click.option("--keep-spurious", is_flag=True, help="Keep what is recognized as noise.")
 @force_option
@@ -101,7 +101,8 @@ def command(
 
     It is in the units of the original. Of a field, as many triangles are written
     as keep it within a part of its own error, from a grid of 256 to 512 cells a
-    side. An OBJ gets its MTL and images beside it, a PLY its images.
+    side. A glTF gets its buffer and images
+    beside it, an OBJ its MTL and images, a PLY its images.
 
     \b
     Example: nisp decode model.nisp --mesh -o out.glb

@@ -289,7 +289,7 @@ TESTED_ELSEWHERE = {
     "io/read/stl.py": "io/test_stl_off.py",
     "io/read/wavefront.py": "io/test_obj.py",
     "io/save.py": "io/test_writers.py",
-    "io/write/glb.py": "io/test_writers.py",
+    "io/write/gltf_tree.py": "io/test_writers.py",
     "io/write/losses.py": "io/test_writers.py",
     "io/write/npz.py": "core/test_sdf_grid.py",
     "io/write/trimesh_geometry.py": "test_trimesh_loader.py",

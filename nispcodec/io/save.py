@@ -16,8 +16,9 @@ from nispcodec.core.errors import MeshError
 from nispcodec.core.extras import require
 from nispcodec.io.write.colors import untextured
 from nispcodec.io.write.glb import glb_bytes
+from nispcodec.io.write.gltf import gltf_files
 from nispcodec.io.write.gltf_compression import COMPRESSIONS
-from nispcodec.io.write.losses import glb_losses, obj_losses, ply_losses, stl_losses
+from nispcodec.io.write.losses import gltf_losses, obj_losses, ply_losses, stl_losses
 from nispcodec.io.write.obj import obj_files
 from nispcodec.io.write.ply import ply_files
 from nispcodec.io.write.stl import stl_bytes
@@ -36,8 +37,13 @@ def _alone(
     return {suffix: lambda mesh, stem, colors: {f"{stem}{suffix}": write(mesh, colors)}}
 
 
+COMPRESSING: dict[str, Callable[..., dict[str, bytes]]] = {
+    ".glb": lambda mesh, stem, *how: {f"{stem}.glb": glb_bytes(mesh, *how)},
+    ".gltf": gltf_files,
+}
+"""Writers that take a compression as well."""
 WRITERS: dict[str, Writer] = {
-    **_alone(".glb", glb_bytes),
+    **COMPRESSING,
     ".ply": ply_files,
     **_alone(".stl", stl_bytes),
     ".obj": obj_files,
@@ -47,7 +53,8 @@ SUFFIXES = tuple(WRITERS)
 
 # What each format leaves out of a mesh.
 LOSSES: dict[str, Callable[[TexturedMesh], Iterable[str]]] = {
-    ".glb": glb_losses,
+    ".glb": gltf_losses,
+    ".gltf": gltf_losses,
     ".ply": ply_losses,
     ".stl": stl_losses,
     ".obj": obj_losses,
@@ -71,10 +78,10 @@ def write_mesh(
 ) -> list[Path]:
     """Write the mesh in the format of the path's suffix -> the files written, `path` last.
 
-    An OBJ has its MTL and images beside it, a PLY its images; what a format cannot hold is left out
-    (`losses`). Each file is written whole or not at all. `colors`
+    A glTF has its buffer and images beside it, an OBJ its MTL and images, a PLY its images; what a
+    format cannot hold is left out (`losses`). Each file is written whole or not at all. `colors`
     (n, 4), sRGB-encoded in [0, 1], one for each position, take the place of UVs, materials and
-    textures. `compress`, one of `COMPRESSIONS`, makes a GLB smaller. Raises MeshError for an
+    textures. `compress`, one of `COMPRESSIONS`, makes glTF smaller. Raises MeshError for an
     unknown suffix, no faces, colors or a compression that do not fit or that the format cannot
     hold; NispError when writing fails, and without the package that compresses.
     """
@@ -100,8 +107,8 @@ def expect_compressible(path: Path, compress: str | None) -> None:
         return
     if compress not in COMPRESSIONS:
         raise MeshError(f"compress: expected one of {', '.join(COMPRESSIONS)}, found {compress!r}")
-    if path.suffix.lower() != ".glb":
-        raise MeshError(f"{path}: expected .glb for the compression {compress}")
+    if path.suffix.lower() not in COMPRESSING:
+        raise MeshError(f"{path}: expected .glb or .gltf for the compression {compress}")
     if compress == "draco":
         require("DracoPy", extra="gltf", what_for="compressing by draco")
     if compress == "meshopt":
@@ -148,7 +155,8 @@ def _files(
     if "\0" in str(path) or _CONTROL.search(path.name):
         raise MeshError(f"{str(path)!r}: expected a name without control characters")
     if compress:
-        return {path.name: glb_bytes(mesh, colors, compress)}
-    files = WRITERS[suffix](mesh, path.stem, colors)
+        files = COMPRESSING[suffix](mesh, path.stem, colors, compress)
+    else:
+        files = WRITERS[suffix](mesh, path.stem, colors)
     files[path.name] = files.pop(f"{path.stem}{suffix}")
     return files

@@ -65,6 +65,14 @@ def test_faces_come_back(mesh: TexturedMesh, tmp_path: Path, how: str) -> None:
 
 
 @ALL
+def test_gltf_and_its_buffer_are_a_glb(mesh: TexturedMesh, tmp_path: Path, how: str) -> None:
+    inside = back(mesh, tmp_path, how)
+    found = load_mesh(write_mesh(mesh, tmp_path / "out.gltf", compress=how)[-1])
+    np.testing.assert_array_equal(found.corners, inside.corners)
+    assert [each.data for each in found.textures] == [each.data for each in mesh.textures]
+
+
+@ALL
 def test_primitives_still_meet(mesh: TexturedMesh, tmp_path: Path, how: str) -> None:
     found = back(mesh, tmp_path, how)
     left, right = (
@@ -110,7 +118,7 @@ def test_colors_are_kept(mesh: TexturedMesh, tmp_path: Path, how: str) -> None:
 def test_what_cannot_be_is_refused(
     mesh: TexturedMesh, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    with pytest.raises(MeshError, match=r"expected \.glb for the compression meshopt"):
+    with pytest.raises(MeshError, match=r"expected \.glb or \.gltf for the compression meshopt"):
         write_mesh(mesh, tmp_path / "out.obj", compress="meshopt")
     with pytest.raises(MeshError, match="expected one of draco, meshopt, quantize, found 'zip'"):
         write_mesh(mesh, tmp_path / "out.glb", compress="zip")

@@ -41,9 +41,10 @@ def issues(
     folder: Path,
     colors: np.ndarray | None = None,
     compress: str | None = None,
+    name: str = "out.glb",
 ) -> dict[str, Any]:
-    """The validator's issues with the mesh written as GLB."""
-    path = write_mesh(mesh, folder / "out.glb", colors, compress)[-1]
+    """The validator's issues with the mesh written as glTF."""
+    path = write_mesh(mesh, folder / name, colors, compress)[-1]
     environment = os.environ | {"NODE_PATH": str(PACKAGES)}
     run = subprocess.run(
         [*node, str(path)], capture_output=True, text=True, check=True, env=environment, timeout=60
@@ -70,6 +71,15 @@ def test_decoded_mesh_is_valid(node: list[str], tmp_path: Path) -> None:
 @pytest.mark.parametrize("compress", COMPRESSIONS)
 def test_compressed_meshes_are_valid(node: list[str], tmp_path: Path, compress: str) -> None:
     report = issues(node, NispModel(tiny.document()).to_mesh(32), tmp_path, None, compress)
+    assert report["numErrors"] == report["numWarnings"] == 0, report["messages"]
+
+
+@pytest.mark.parametrize("compress", [None, *COMPRESSIONS])
+def test_files_beside_a_gltf_are_valid(
+    node: list[str], tmp_path: Path, compress: str | None
+) -> None:
+    mesh = NispModel(tiny.document()).to_mesh(32)
+    report = issues(node, mesh, tmp_path, None, compress, "a: 100 % #1 ?.gltf")
     assert report["numErrors"] == report["numWarnings"] == 0, report["messages"]
 
 

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import json
+import re
 import struct
 from dataclasses import replace
 from io import BytesIO
 from pathlib import Path
 from typing import Any
+from urllib.parse import unquote
 
 import numpy as np
 import pytest
@@ -168,7 +170,7 @@ def test_images_of_one_name_are_kept_apart(mesh: TexturedMesh) -> None:
     assert len(tree["images"]) == 2
 
 
-@pytest.mark.parametrize("suffix", [".glb", ".obj", ".ply", ".stl"])
+@pytest.mark.parametrize("suffix", [".glb", ".gltf", ".obj", ".ply", ".stl"])
 def test_trimesh_reads_the_same_triangles(mesh: TexturedMesh, tmp_path: Path, suffix: str) -> None:
     path = tmp_path / f"out{suffix}"
     written = write_mesh(mesh, path)
@@ -178,7 +180,7 @@ def test_trimesh_reads_the_same_triangles(mesh: TexturedMesh, tmp_path: Path, su
     assert triangles(loaded.vertices, loaded.faces) == triangles(mesh.positions, mesh.faces)
 
 
-@pytest.mark.parametrize("suffix", [".glb", ".obj"])
+@pytest.mark.parametrize("suffix", [".glb", ".gltf", ".obj"])
 def test_our_own_reader_finds_everything_again(
     mesh: TexturedMesh, tmp_path: Path, suffix: str
 ) -> None:
@@ -192,14 +194,14 @@ def test_our_own_reader_finds_everything_again(
     assert wood.maps["normal"].strength == pytest.approx(0.7)
     data = {slot: again.textures[used.texture].data for slot, used in wood.maps.items()}
     assert data == {"base_color": mesh.textures[0].data, "normal": mesh.textures[1].data}
-    if suffix == ".glb":
+    if suffix != ".obj":
         assert wood.base_color == mesh.materials[0].base_color
         assert wood.maps["base_color"].wrap == ("clamp", "mirror")
         assert wood.maps["base_color"].filter == "nearest"
         assert (wood.alpha_mode, wood.alpha_cutoff) == ("mask", 0.3)
 
 
-@pytest.mark.parametrize("suffix", [".glb", ".obj", ".ply"])
+@pytest.mark.parametrize("suffix", [".glb", ".gltf", ".obj", ".ply"])
 @pytest.mark.parametrize(("offset", "scale"), [(1e7, 1.0), (0.0, 1e-4), (-3e5, 1e3)])
 def test_far_and_tiny_meshes_keep_their_shape(
     mesh: TexturedMesh, tmp_path: Path, suffix: str, offset: float, scale: float
@@ -224,6 +226,34 @@ def test_the_paths_are_known_before_the_mesh(
     expected = mesh_paths(path, mesh.materials, mesh.textures, colored)
     assert expected == write_mesh(mesh, path, colors)
     assert expected[-1] == path
+
+
+def test_gltf_names_its_files_as_uris(mesh: TexturedMesh, tmp_path: Path) -> None:
+    written = write_mesh(mesh, tmp_path / "a: 100 % #1 ?ü.gltf")
+    tree = json.loads(written[-1].read_bytes())
+    uris = [each["uri"] for each in (*tree["images"], *tree["buffers"])]
+    assert all(re.fullmatch(r"[\w.%-]+", each, re.ASCII) for each in uris)
+    assert {unquote(each) for each in uris} == {path.name for path in written[:-1]}
+    assert [each.data for each in load_mesh(written[-1]).textures] == [
+        each.data for each in mesh.textures
+    ]
+
+
+def test_gltf_says_what_a_glb_says(mesh: TexturedMesh, tmp_path: Path) -> None:
+    tree = json.loads(write_mesh(mesh, tmp_path / "out.gltf")[-1].read_bytes())
+    inside, _ = glb_parts(glb_bytes(mesh))
+    same = ("scene", "scenes", "nodes", "materials", "textures", "samplers")
+    assert [tree[key] for key in same] == [inside[key] for key in same]
+    assert {each["type"] for each in tree["accessors"]} == {"VEC2", "VEC3", "SCALAR"}
+
+
+def test_gltf_has_png_for_avif(mesh: TexturedMesh, tmp_path: Path) -> None:
+    data = BytesIO()
+    Image.fromarray(PIXELS).save(data, "AVIF")
+    avif = tuple(Texture(f"{k}.AVIF", data.getvalue(), "image/avif") for k in range(2))
+    names = [path.name for path in write_mesh(replace(mesh, textures=avif), tmp_path / "o.gltf")]
+    assert names == ["o_0.png", "o_1.png", "o.bin", "o.gltf"]
+    assert Image.open(tmp_path / "o_0.png").format == "PNG"
 
 
 def test_obj_text(mesh: TexturedMesh) -> None:
@@ -304,7 +334,7 @@ def test_images_that_glb_converts_are_said(mesh: TexturedMesh) -> None:
     assert "converted to PNG" in losses(replace(mesh, textures=avif), "x.glb")[0]
 
 
-@pytest.mark.parametrize("suffix", [".obj", ".ply", ".glb"])
+@pytest.mark.parametrize("suffix", [".obj", ".ply", ".glb", ".gltf"])
 def test_names_that_are_no_text_are_kept_as_bytes(
     mesh: TexturedMesh, tmp_path: Path, suffix: str
 ) -> None:
@@ -350,7 +380,7 @@ def test_colors_that_do_not_fit_are_refused(mesh: TexturedMesh, tmp_path: Path) 
 
 
 def test_unknown_suffix_names_the_choices(mesh: TexturedMesh, tmp_path: Path) -> None:
-    with pytest.raises(MeshError, match=r"\.glb, \.ply, \.stl, \.obj, found '\.fbx'"):
+    with pytest.raises(MeshError, match=r"\.glb, \.gltf, \.ply, \.stl, \.obj, found '\.fbx'"):
         write_mesh(mesh, tmp_path / "out.fbx")
     assert not list(tmp_path.iterdir())
 
@@ -369,7 +399,7 @@ def test_a_mesh_without_faces_is_refused(mesh: TexturedMesh, tmp_path: Path) -> 
         uv_faces=np.zeros((0, 3), np.int32),
         face_materials=np.zeros(0, np.int32),
     )
-    for suffix in (".glb", ".obj", ".ply", ".stl"):
+    for suffix in SUFFIXES:
         with pytest.raises(MeshError, match="found none"):
             write_mesh(nothing, tmp_path / f"out{suffix}")
     assert not list(tmp_path.iterdir())

@@ -82,7 +82,8 @@ def read_uri(uri: str, folder: Folder, place: str) -> bytes | None:
     Raises MeshError, naming `place`, for a file that cannot be read and for malformed base64.
     """
     if not uri.startswith("data:"):
-        path = folder.find(unquote(uri)) or folder.find(uri)
+        # What is no UTF-8 names a file byte for byte.
+        path = folder.find(unquote(uri, errors="surrogateescape")) or folder.find(uri)
         return None if path is None else folder.read(path)
     header, _, payload = uri.partition(",")
     if not header.endswith(";base64"):

@@ -60,7 +60,8 @@ class _Packer:
         for primitive in primitives:
             self.primitive(primitive, grid)
         for image in self.tree.get("images", ()):
-            image["bufferView"] = self.view(self.bytes_of(image["bufferView"]))
+            if "bufferView" in image:
+                image["bufferView"] = self.view(self.bytes_of(image["bufferView"]))
         if self.how != "draco":
             grid.place(self.tree["nodes"][0])
         self.declare({"draco": [DRACO], "meshopt": [QUANTIZATION, MESHOPT]})

@@ -8,10 +8,10 @@ from nispcodec.core.asset import Material, TexturedMesh, TextureMap
 from nispcodec.core.slots import BY_NAME, SLOTS
 
 
-def glb_losses(mesh: TexturedMesh) -> Iterator[str]:
-    """The sentences of a GLB: all but AVIF is kept."""
+def gltf_losses(mesh: TexturedMesh) -> Iterator[str]:
+    """The sentences of a glTF or GLB: all but AVIF is kept."""
     if any(texture.mime == "image/avif" for texture in mesh.textures):
-        yield "the AVIF of images, which are converted to PNG: GLB readers do not know it"
+        yield "the AVIF of images, which are converted to PNG: glTF readers do not know it"
 
 
 def obj_losses(mesh: TexturedMesh) -> Iterator[str]:
