@@ -58,7 +58,7 @@ MOST_OF_A_FILE = 0.8
     "--target-size",
     callback=parsed_size,
     metavar="SIZE",
-    help="Of the file without its textures, such as 20kB.",
+    help="Of the file without its textures, at most, such as 20kB.",
 )
 @click.option(
     "--target-total",

@@ -105,6 +105,7 @@ RESULTS = (
     CommittedResult("bits.json", "benchmarks.studies.bits", ENCODE),
     CommittedResult("codings.json", "benchmarks.studies.codings", FORMAT),
     CommittedResult("crossover.json", "benchmarks.studies.crossover", (*ROUND_TRIP, *RIVALS)),
+    CommittedResult("curve.json", "benchmarks.studies.curve", ROUND_TRIP),
     CommittedResult("decoder.json", "benchmarks.studies.decoder", ROUND_TRIP),
     CommittedResult("format.json", "benchmarks.studies.format", (*CORE, *FORMAT)),
     CommittedResult("mesh_queries.json", "benchmarks.studies.mesh_queries", (*CORE, *INFER)),

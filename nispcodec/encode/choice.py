@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 from nispcodec.core.document import Document, Field
 from nispcodec.core.errors import FitError, NispError
@@ -49,9 +50,10 @@ class Choice:
         config: EncodeConfig,
         tuning: Tuning,
         halves: Callable[[Sorted], Split | None],
+        document: Made,
     ) -> None:
         self._form, self._config, self._tuning = form, config, tuning
-        self._halves = halves
+        self._halves, self._document = halves, document
         self.split: Split | None = None
         self._forms = tuning.forms
         self._estimate, self._field_bytes = 0.0, 0.0
@@ -61,8 +63,10 @@ class Choice:
 
         `probe_error` is the held-out error of the SDF's probe, normalized frame.
         """
-        if not self._open or self._config.target_size or self._config.target_error:
+        if not self._open or self._config.target_error:
             return True
+        if self._config.target_size:
+            return not self._surely_nearer(self._forms.fitted * probe_error)
         forms = self._forms
         self._field_bytes = size
         distance = forms.fitted * probe_error
@@ -71,6 +75,27 @@ class Choice:
         self._estimate = self._form.estimate(distance, few, forms.surely_larger * size)
         self.split = self._better_split(size, distance)
         return self.split is None and self._estimate > few
+
+    def _surely_nearer(self, distance: float) -> bool:
+        """Whether triangles of the target size need not be set against networks.
+
+        Those are foreseen to have such a mean distance.
+        """
+        forms, found = self._forms, self._of_target_size
+        near = max(forms.negligible, forms.surely_nearer * distance)
+        fits = found.size + self._besides <= (self._config.target_size or 0.0)
+        return fits and forms.is_sound(found.errors) and found.errors.distance <= near
+
+    @cached_property
+    def _besides(self) -> int:
+        """Bytes of a file of triangles besides these."""
+        fewest = self._form.fewest()
+        return own_bytes(self._document(None, fewest.parts)) - fewest.size
+
+    @cached_property
+    def _of_target_size(self) -> Candidate:
+        """Triangles of the target size; the smallest where that is too small."""
+        return self._form.of_size((self._config.target_size or 0.0) - self._besides)
 
     def _better_split(self, size: float, distance: float) -> Split | None:
         """Halves that promise to take clearly fewer bytes than networks or triangles alone.
@@ -107,7 +132,8 @@ class Choice:
         target = self._config.target_size
         better = other < size
         if target:
-            better = other <= target and found.errors.distance < errors.distance
+            cost = self._forms.error_cost
+            better = other <= target and cost(found.errors) < cost(errors)
         return Chosen(meshes, found.errors, size) if better else Chosen(field, errors, other)
 
     def _instead(self, field: Document, size: int, errors: Errors) -> Chosen | None:
@@ -120,7 +146,7 @@ class Choice:
         if self._config.target_error:
             found = self._form.within(self._config.target_error, errors.uv)
         elif target:
-            found = self._form.of_size(size)
+            found = self._of_target_size
         else:
             found = self._form.best(min(errors.distance, self._nearest), most)
         if found is None or not self._forms.is_sound(found.errors):
@@ -129,19 +155,19 @@ class Choice:
         fits = own_bytes(meshes) <= most
         return Chosen(meshes, found.errors, size, made_up) if fits else None
 
-    def triangles(self, document: Made) -> Chosen:
+    def triangles(self) -> Chosen:
         """The asset as triangles, as near as the preset or the target asks.
 
         Raises FitError for a target error that they miss, NispError for a target size that is too
         small.
         """
-        found = self._wanted(document)
-        return Chosen(document(None, found.parts), found.errors, self._field_bytes)
+        found = self._wanted()
+        return Chosen(self._document(None, found.parts), found.errors, self._field_bytes)
 
     def _rival(self, size: int, errors: Errors) -> Candidate | None:
         """Triangles to set against a fitted field, if there are some in fewer bytes or as asked."""
         if self._config.target_size:
-            return self._form.of_size(size)
+            return self._of_target_size
         if self._config.target_error:
             return self._form.within(self._config.target_error, errors.uv)
         if self._form.estimate(errors.distance, size, size) >= size:
@@ -152,7 +178,7 @@ class Choice:
                 return found
         return None
 
-    def _wanted(self, document: Made) -> Candidate:
+    def _wanted(self) -> Candidate:
         config = self._config
         if config.target_error:
             found = self._form.within(config.target_error, math.inf)
@@ -163,15 +189,13 @@ class Choice:
             return found
         if not config.target_size:
             return self._form.best(self._nearest, self._field_bytes or math.inf)
-        fewest = self._form.fewest()
-        besides = own_bytes(document(None, fewest.parts)) - fewest.size
-        found = self._form.of_size(config.target_size - besides)
-        if besides + found.size > config.target_size:
+        least = self._besides + self._of_target_size.size
+        if least > config.target_size:
             raise NispError(
-                f"target size: expected at least {besides + found.size:,} bytes for this asset's "
+                f"target size: expected at least {least:,} bytes for this asset's "
                 f"triangles, found {config.target_size:,.0f}"
             )
-        return found
+        return self._of_target_size
 
     @property
     def _nearest(self) -> float:

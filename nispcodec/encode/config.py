@@ -43,7 +43,8 @@ class EncodeConfig:
                     "auto" pads them too, and codes colors as AVIF, data as AVIF or without loss
     texture_quality 1 to 100, for a `texture_format` and for images that are padded
     textures        False leaves the images out
-    target_size     bytes of the file without its textures; the networks are made to fit
+    target_size     bytes of the file without its textures, at most; networks or triangles are made
+                    to fit, whichever is nearer then
     target_total    bytes of the whole file; images are padded and coded again, none is resized, and
                     the share of images and geometry is chosen by pictures of the asset
     target_error    mean distance to the surface (normalized frame); the SDF is made to fit
@@ -156,7 +157,14 @@ class FormConfig:
     worth_mixing     share of the bytes of both pure forms that some bodies as networks and others
                      as triangles may take at most, foreseen
     least_bits       of a coordinate, where a target size asks for grids that coarse
-    size_trials      face counts tried for a target size: each halves what is left, on a log scale
+    size_trials      face counts tried for a target size at most
+    size_aim         share of a target size that triangles are aimed at: within 3 % is enough
+    whole_bits       bits a coordinate, of positions and UVs, of the unsimplified mesh at a target
+                     size, against those of a negligible distance and UV error: each step takes 6 to
+                     9 % more bytes
+    surely_nearer    share of the networks' distance, as the probe foresees it, within which
+                     triangles of a target size are taken unseen: fits ended at 0.4 of what was
+                     foreseen
     """
 
     growth: float = 1.8
@@ -182,6 +190,11 @@ class FormConfig:
     worth_mixing: float = 0.9
     least_bits: int = 5
     size_trials: int = 7
+    size_aim: float = 0.985
+    whole_bits: tuple[tuple[int, int], ...] = (
+        (-2, 0), (-1, 0), (0, 0), (0, 1), (1, 1), (1, 2), (2, 2),
+    )  # fmt: skip
+    surely_nearer: float = 0.25
     ladder: LadderConfig = field(default_factory=LadderConfig)
 
     def is_sound(self, errors: Errors) -> bool:
@@ -191,6 +204,17 @@ class FormConfig:
     def cost(self, size: float, distance: float) -> float:
         """The logarithm of bytes, and that of a mean distance as weighted against it."""
         return math.log(size) + self.distance_weight * math.log(max(distance, self.negligible))
+
+    def error_cost(self, errors: Errors) -> float:
+        """The weight of errors at equal bytes: logarithms of distance, and of mean and median UV.
+
+        Networks have the better medians, triangles the better means: colors follow both. Surface
+        that is made up or lost does not count: a little of it, far away, would outweigh all else.
+        """
+        uvs = [math.log(max(each, self.negligible_uv)) for each in (errors.uv, errors.uv_median)]
+        near = max(errors.distance - errors.far_part, self.negligible)
+        distance = self.distance_weight * math.log(near)
+        return distance + self.uv_weight * sum(uvs) / len(uvs)
 
 
 @dataclass(frozen=True)

@@ -77,11 +77,13 @@ class FieldForm:
         if config.target_error is not None:
             return self._field(fit_to_error(self._context, config.target_error))
         if config.target_size is not None:
-            return self._field(
-                fit_to_size(
-                    self._context, config.target_size, lambda found: document(self._field(found))
-                )
+            networks = fit_to_size(
+                self._context,
+                config.target_size,
+                lambda found: document(self._field(found)),
+                wanted,
             )
+            return self._field(networks) if networks else None
         networks = fit_with_preset(self._context, wanted)
         return self._field(networks) if networks else None
 

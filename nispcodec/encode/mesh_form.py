@@ -13,6 +13,7 @@ from nispcodec.core.mesh_part import MeshPart
 from nispcodec.core.progress import Listener, Progress
 from nispcodec.encode.bodies import Sorted, sort_bodies
 from nispcodec.encode.config import FormConfig
+from nispcodec.encode.mesh_size import fewest, nearest_of_size
 from nispcodec.encode.rungs import Rungs
 from nispcodec.extract.meshing import default_resolution, expected_faces, textured_mesh
 from nispcodec.format import mesh
@@ -133,36 +134,11 @@ class MeshForm:
     def of_size(self, most_bytes: float) -> Candidate:
         """The nearest candidate found of at most so many bytes; the smallest where none is."""
         self._progress(Progress(stage="triangles"))
-        for whole in reversed(list(self._whole(most_bytes))):
-            if whole.size <= most_bytes:
-                return whole
-        few, many = float(self._config.ladder.fewest), float(len(self.simplifier.source.triangles))
-        best = self.fewest()
-        for _ in range(self._config.size_trials):
-            middle = math.sqrt(few * many)
-            found = self.simplifier.balanced(round(middle))
-            if found.size > most_bytes:
-                many = middle
-            else:
-                few = middle
-                best = min(best, found, key=lambda each: each.errors.distance)
-        return self._coarser(best, most_bytes)
+        return nearest_of_size(self.simplifier, most_bytes, self._config)
 
     def fewest(self) -> Candidate:
         """The candidate of the fewest faces that are made."""
-        everything = len(self.simplifier.source.triangles)
-        return self.simplifier.balanced(min(self._config.ladder.fewest, everything))
-
-    def _coarser(self, found: Candidate, most_bytes: float) -> Candidate:
-        """About the same faces on coarser grids, until they take at most so many bytes.
-
-        Bodies that are kept whole leave no fewer faces, but bits.
-        """
-        least, faces = self._config.least_bits, min(self._config.ladder.fewest, found.faces)
-        while found.size > most_bytes and max(found.bits, found.uv_bits) > least:
-            bits, uv_bits = (max(each - 1, least) for each in (found.bits, found.uv_bits))
-            found = self.simplifier.candidate(faces, bits, uv_bits)
-        return found
+        return fewest(self.simplifier)
 
     def _cost(self, candidate: Candidate) -> float:
         config, errors = self._config, candidate.errors

@@ -16,7 +16,7 @@ from nispcodec.encode.config import EncodeConfig, Tuning
 from nispcodec.encode.far_surface import far_warnings
 from nispcodec.encode.field_form import FieldForm
 from nispcodec.encode.mesh_form import MeshForm
-from nispcodec.encode.report import measured
+from nispcodec.encode.report import measured, unmeasured
 from nispcodec.encode.single_precision import short_frame
 from nispcodec.encode.split import split
 from nispcodec.encode.stages import with_overall
@@ -63,13 +63,13 @@ def _encoded(
     frame = short_frame(analysis.frame, tuning.negligible)
     form = MeshForm(analysis, config.seed, tuning.forms, progress)
     field = FieldForm(analysis, config, tuning, engine, progress)
-    choice = Choice(form, config, tuning, partial(split, field))
 
     def document(held: Field | None = None, parts: tuple[MeshPart, ...] = ()) -> Document:
-        return Document(frame, materials, textures, held, parts)
+        return Document(frame, materials, textures, held, parts, unmeasured(config))
 
+    choice = Choice(form, config, tuning, partial(split, field), document)
     if config.geometry == "mesh":
-        chosen = choice.triangles(document)
+        chosen = choice.triangles()
         info = measured(chosen, analysis, config)
         return _finished(chosen, info, mesh.name, config, tuning, progress)
     held = field.fit(document, choice.wants_field)
@@ -81,7 +81,7 @@ def _encoded(
         fitted = document(held, parts)
         chosen = choice.after_fit(fitted, form.errors(fitted))
     else:
-        chosen = choice.triangles(document)
+        chosen = choice.triangles()
     info = measured(chosen, analysis, config, engine.name, field.sets)
     return _finished(chosen, info, mesh.name, config, tuning, progress)
 

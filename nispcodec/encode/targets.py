@@ -99,32 +99,60 @@ def fit_with_preset(context: FitContext, wanted: Callable[[float, float], bool])
 
 
 def fit_to_size(
-    context: FitContext, wanted: float, document: Callable[[Networks], Document]
+    context: FitContext,
+    size: float,
+    document: Callable[[Networks], Document],
+    wanted: Callable[[float, float], bool] = lambda size, probe_error: True,
 ) -> Networks:
-    """Networks for a file of `wanted` bytes, textures apart; `document` is the file's content.
+    """Networks for a file of at most `size` bytes, textures apart; `document` is its content.
 
-    Raises NispError, before anything is trained, when that is too few for the asset.
+    None if they are not wanted, as in `fit_with_preset`. Raises NispError, before anything is
+    trained, when the size is too small for the asset.
     """
-    problem = context.problem
-    sizing = problem.config.sizing
-    tiny = problem.specs(smallest(problem.networks, sizing))
-    besides = _bytes_besides(document({name: _blank(spec) for name, spec in tiny.items()}))
-    least = besides + bytes_of(tiny, sizing)
-    if wanted < least:
+    besides, least = _least_bytes(context.problem, document)
+    if size < least:
         raise NispError(
             f"target size: expected at least {least:,.0f} bytes for this asset (its tables and the "
-            f"smallest networks), found {wanted:,.0f}"
+            f"smallest networks), found {size:,.0f}"
         )
-    errors = context.probed
+    if not wanted(size, context.probed["sdf"]):
+        return {}
+    hidden, budgets = _shared(context, size - besides)
+    networks: Networks = {}
+    again = list(budgets)
+    for _ in range(context.problem.config.target.rounds):
+        tasks = context.tasks(hidden, context.probed, budgets)
+        # The same seed gives the same weights: what is fitted again is rounded more coarsely.
+        networks |= context.fit([task for task in tasks if task.name in again], context.listen)
+        over = _bytes(document(networks), TXTR) - size
+        if over <= 0:
+            break
+        again = [min(budgets, key=lambda name: budgets[name])]
+        budgets[again[0]] -= 8 * (over + context.problem.config.target.spare)
+    return networks
+
+
+def _least_bytes(
+    problem: AssetProblem, document: Callable[[Networks], Document]
+) -> tuple[int, float]:
+    """Of a file with the smallest networks: what is not networks, and all of it."""
+    sizing = problem.config.sizing
+    tiny = problem.specs(smallest(problem.networks, sizing))
+    blank = {name: _blank(spec) for name, spec in tiny.items()}
+    besides = _bytes(document(blank), NETS, TXTR)
+    return besides, besides + bytes_of(tiny, sizing)
+
+
+def _shared(context: FitContext, room: float) -> tuple[Hidden, dict[str, float]]:
+    """Hidden layers whose networks take so many bytes, and the bits of each."""
+    problem, errors, sizing = context.problem, context.probed, context.problem.config.sizing
     scale = scale_for_bytes(
-        lambda scale: bytes_of(problem.specs(context.hidden_layers(errors, scale)), sizing),
-        wanted - besides,
+        lambda scale: bytes_of(problem.specs(context.hidden_layers(errors, scale)), sizing), room
     )
     hidden = context.hidden_layers(errors, scale)
     specs = problem.specs(hidden)
-    share = (wanted - besides) / bytes_of(specs, sizing)
-    budgets = {name: share * bits for name, bits in bits_of(specs, sizing).items()}
-    return context.fit(context.tasks(hidden, errors, budgets), context.listen)
+    share = room / bytes_of(specs, sizing)
+    return hidden, {name: share * bits for name, bits in bits_of(specs, sizing).items()}
 
 
 def fit_to_error(context: FitContext, wanted: float) -> Networks:
@@ -164,11 +192,11 @@ def _blank(spec: NetworkSpec) -> Network:
     return Network(spec, {name: np.zeros(shape, np.float32) for name, shape in spec.shapes.items()})
 
 
-def _bytes_besides(document: Document) -> int:
-    """Of a file without its textures, what is not networks."""
+def _bytes(document: Document, *left_out: str) -> int:
+    """Of a file, without the sections of these codes."""
     data = pack(document)
     return len(data) - sum(
-        section.stored_length for section in inspect(data) if section.code in (NETS, TXTR)
+        section.stored_length for section in inspect(data) if section.code in left_out
     )
 
 

@@ -25,6 +25,7 @@ class Errors:
     distance, uv  means; distance_p99, uv_median; 0 for UVs where the original has none
     made_up       points of the part that are far from the original
     lost          points of the original, of counted faces, that are far from the part
+    far_part      what far points add to the distance
     """
 
     distance: float
@@ -33,6 +34,7 @@ class Errors:
     uv_median: float
     made_up: FarPoints = field(default_factory=FarPoints, compare=False)
     lost: FarPoints = field(default_factory=FarPoints, compare=False)
+    far_part: float = 0.0
 
     def within(self, distance: float, uv: float) -> bool:
         """Whether both means are at most so large."""
@@ -89,13 +91,16 @@ class Original:
         ]
         misses = [uv_errors(self.surface, other, each) for each in directions]
         seen = [each for each in misses if len(each)]
+        distance = max(float(each.distances.mean()) for each in directions)
+        near = max(float((each.distances * (each.distances <= FAR)).mean()) for each in directions)
         return Errors(
-            distance=max(float(each.distances.mean()) for each in directions),
+            distance=distance,
             distance_p99=max(float(np.percentile(each.distances, 99)) for each in directions),
             uv=max((float(each.mean()) for each in seen), default=0.0),
             uv_median=max((float(np.median(each)) for each in seen), default=0.0),
             made_up=self._nowhere(FarPoints.of(decoded, points, directions[1].distances)),
             lost=FarPoints.of(self.surface.mesh, self.points, directions[0].distances),
+            far_part=distance - near,
         )
 
     def _nowhere(self, far: FarPoints) -> FarPoints:

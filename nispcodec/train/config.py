@@ -313,12 +313,13 @@ class PaperConfig:
 
 @dataclass(frozen=True)
 class TargetConfig:
-    """The search for a given error.
+    """The search for a given error, or for a given size.
 
     close        how far, relative to it, from an error that was asked for is near enough
     slope        the error falls with this power of the SDF's width, until two fits say better ...
     slopes       ... within these
     rounds       fits at most
+    spare        bytes by which a file that was too large is to be smaller than asked
     least_error  samples, float32 and the extracted mesh are good for no less
     """
 
@@ -326,6 +327,7 @@ class TargetConfig:
     slope: float = 0.7
     slopes: tuple[float, float] = (0.3, 1.5)
     rounds: int = 5
+    spare: float = 8.0
     least_error: float = 2e-5
 
 

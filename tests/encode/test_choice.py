@@ -61,7 +61,7 @@ def candidate(errors: Errors = EXACT) -> Any:
 
 def choice(form: Any, halves: Any = None, tuning: Tuning = TUNING, **options: Any) -> Choice:
     config = EncodeConfig(**options)
-    return Choice(form, config, tuning, lambda _: halves)
+    return Choice(form, config, tuning, lambda _: halves, as_mesh)
 
 
 def as_mesh(field: Field | None, parts: tuple[MeshPart, ...]) -> Document:
@@ -108,7 +108,6 @@ def test_halves_that_cannot_be_small_are_not_made() -> None:
         {"geometry": "field"},
         {"preset": "paper"},
         {"prune": "smallest"},
-        {"target_size": 5000},
         {"target_error": 1e-3},
     ],
 )
@@ -156,15 +155,35 @@ def test_networks_asked_for_are_kept_whatever_triangles_take() -> None:
     assert form.asked == []
 
 
-def test_to_a_size_the_nearer_form_is_taken() -> None:
-    for errors, mesh in ((EXACT, True), (replace(OFF, distance=1.0), False)):
-        form = Told(10.0, of_size=candidate(errors))
-        chosen = choice(form, target_size=SIZE).after_fit(FIELD, OFF)
-        assert bool(chosen.document.meshes) is mesh
+@pytest.mark.parametrize(
+    ("errors", "mesh"),
+    [
+        (EXACT, True),
+        (replace(OFF, distance=1.0), False),
+        (replace(OFF, uv=1.0), False),
+        (replace(OFF, distance=0.009, uv_median=0.04), False),
+        (replace(OFF, distance=1.0, far_part=0.995), True),
+    ],
+)
+def test_to_a_size_the_better_form_is_taken(errors: Errors, mesh: bool) -> None:
+    form = Told(10.0, of_size=candidate(errors), fewest=candidate())
+    chosen = choice(form, target_size=SIZE).after_fit(FIELD, OFF)
+    assert bool(chosen.document.meshes) is mesh
+
+
+@pytest.mark.parametrize(
+    ("distance", "size", "fitted"), [(5e-5, SIZE, False), (5e-4, SIZE, True), (5e-5, 20.0, True)]
+)
+def test_to_a_size_nothing_is_fitted_where_triangles_are_surely_nearer(
+    distance: float, size: float, fitted: bool
+) -> None:
+    near = candidate(Errors(distance, distance, 1e-4, 1e-4))
+    asked = choice(Told(of_size=near, fewest=near), target_size=size)
+    assert asked.wants_field(size, 1e-3) is fitted
 
 
 def test_triangles_over_the_size_are_not_taken_however_near() -> None:
-    form = Told(10.0, of_size=candidate(EXACT))
+    form = Told(10.0, of_size=candidate(EXACT), fewest=candidate())
     size = own_bytes(as_mesh(None, (PART,)))
     chosen = choice(form, target_size=size - 1).after_fit(FIELD, OFF)
     assert (chosen.document, chosen.errors, chosen.other_bytes) == (FIELD, OFF, size)
@@ -179,20 +198,20 @@ def test_to_an_error_the_smaller_form_is_taken() -> None:
 
 def test_triangles_asked_for_are_as_near_as_the_preset_says() -> None:
     form = Told(best=candidate())
-    chosen = choice(form, geometry="mesh", preset="best").triangles(as_mesh)
+    chosen = choice(form, geometry="mesh", preset="best").triangles()
     assert chosen.document.meshes == (PART,)
     assert form.asked == [("best", Tuning().training.budgets["best"].mesh, math.inf)]
 
 
 def test_targets_that_triangles_miss_are_errors() -> None:
     with pytest.raises(FitError, match="target error"):
-        choice(Told(), geometry="mesh", target_error=1e-6).triangles(as_mesh)
+        choice(Told(), geometry="mesh", target_error=1e-6).triangles()
     form = Told(of_size=candidate(), fewest=candidate())
     small = choice(form, geometry="mesh", target_size=20)
     with pytest.raises(NispError, match="target size: expected at least"):
-        small.triangles(as_mesh)
+        small.triangles()
     wide = choice(form, geometry="mesh", target_size=20_000)
-    assert wide.triangles(as_mesh).document.meshes == (PART,)
+    assert wide.triangles().document.meshes == (PART,)
 
 
 def test_images_do_not_count() -> None:

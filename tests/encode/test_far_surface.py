@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -34,7 +35,7 @@ def far(count: int, at: tuple[float, float, float] = (0.5, 0.0, 0.0)) -> FarPoin
     return FarPoints(1000, np.asarray(at) + along, np.ones(count, np.int32))
 
 
-def warnings(better: str | None = "balanced", **points: FarPoints) -> list[str]:
+def warnings(better: str | None = "balanced", **points: Any) -> list[str]:
     return list(far_warnings(HELD, Errors(0.0, 0.0, 0.0, 0.0, **points), better, 5e-4))
 
 

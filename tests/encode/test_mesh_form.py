@@ -61,27 +61,6 @@ def test_the_best_makes_up_and_loses_nothing_notable(ball: MeshForm) -> None:
     assert CONFIG.is_sound(ball.best(1.0, math.inf).errors)
 
 
-def test_a_candidate_of_a_size_is_the_nearest_found(ball: MeshForm) -> None:
-    sizes = [ball.of_size(most).size for most in (400, 600, 1200)]
-    distances = [ball.of_size(most).errors.distance for most in (400, 600, 1200)]
-    assert [size <= most for size, most in zip(sizes, (400, 600, 1200), strict=True)] == [True] * 3
-    assert distances == sorted(distances, reverse=True)
-
-
-def test_few_bytes_are_met_by_coarser_grids(ball: MeshForm) -> None:
-    fewest = ball.fewest()
-    coarse = ball.of_size(0.8 * fewest.size)
-    assert coarse.size <= 0.8 * fewest.size
-    assert coarse.bits < fewest.bits
-    assert ball.of_size(1).bits == CONFIG.least_bits
-
-
-def test_all_faces_are_taken_where_they_fit(box: MeshForm) -> None:
-    found = box.of_size(500)
-    assert (found.faces, found.size <= 500) == (12, True)
-    assert found.errors.distance <= CONFIG.negligible
-
-
 def test_errors_of_a_document_are_those_of_what_it_decodes_to(ball: MeshForm) -> None:
     best = ball.best(4e-3, math.inf)
     frame = Frame((0.0, 0.0, 0.0), 1.0)
