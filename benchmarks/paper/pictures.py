@@ -87,21 +87,43 @@ def baselines(mesh: TexturedMesh, model: NispModel, seed: int, threads: int) -> 
     analysis = analyze(mesh, seed)
     sets = training_sets(Sampler(analysis, seed))
     surface = Surface.of(mesh, analysis.frame)
-    specs = {name: model.document.networks[name].spec for name in _UV}
-    plain = replace(specs["uv"], conditioning="none", charts=0, embedding=0)
-    as_large = _of_size(sum(spec.weight_count for spec in specs.values()))
-    colored = _colored(sets.uvs, surface), _colored(sets.held_out_surface, surface)
-    schedule = _schedule(model, sets)
-    objective = PointObjective(TrainConfig().loss)
-    tasks = [
-        Task(name, spec, *samples, objective, schedule)
-        for name, spec, samples in (
-            ("unconditioned", plain, (sets.uvs, sets.held_out_surface)),
-            ("color", as_large, colored),
-        )
-    ]
+    tasks = [_unconditioned(model, sets), _color(model, sets, surface)]
+    return fit_networks(tasks, seed, choose_engine("auto", "cpu", False, _told), threads, _told)
+
+
+def unconditioned(mesh: TexturedMesh, model: NispModel, seed: int, threads: int) -> Network:
+    """The network from a point to its UV with no chart to tell, fitted."""
+    sets = training_sets(Sampler(analyze(mesh, seed), seed))
     engine = choose_engine("auto", "cpu", False, _told)
-    return fit_networks(tasks, seed, engine, threads, _told)
+    return fit_networks([_unconditioned(model, sets)], seed, engine, threads, _told)[
+        "unconditioned"
+    ]
+
+
+def _unconditioned(model: NispModel, sets: TrainingSets) -> Task:
+    """As the model's UV network, but for charts."""
+    spec = model.document.networks["uv"].spec
+    plain = replace(spec, conditioning="none", charts=0, embedding=0)
+    return _task("unconditioned", plain, sets.uvs, sets.held_out_surface, model, sets)
+
+
+def _color(model: NispModel, sets: TrainingSets, surface: Surface) -> Task:
+    """As many weights as the model's chart and UV networks have together."""
+    spec = _of_size(sum(model.document.networks[name].spec.weight_count for name in _UV))
+    samples, held_out = _colored(sets.uvs, surface), _colored(sets.held_out_surface, surface)
+    return _task("color", spec, samples, held_out, model, sets)
+
+
+def _task(
+    name: str,
+    spec: NetworkSpec,
+    samples: SampleSet,
+    held_out: SampleSet,
+    model: NispModel,
+    sets: TrainingSets,
+) -> Task:
+    objective = PointObjective(TrainConfig().loss)
+    return Task(name, spec, samples, held_out, objective, _schedule(model, sets))
 
 
 _UV = ("chart", "uv")

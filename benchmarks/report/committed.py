@@ -101,6 +101,7 @@ RESULTS = (
     CommittedResult(
         "paper_synthesized_views.json", "benchmarks.paper.synthesized_views", (*ROUND_TRIP, *RENDER)
     ),
+    CommittedResult("paper_uv_scatter.json", "benchmarks.paper.uv_scatter", (*ROUND_TRIP, *RENDER)),
     CommittedResult("pruning.json", "benchmarks.paper.pruning", (*TRAIN, *FORMAT)),
     CommittedResult("bits.json", "benchmarks.studies.bits", ENCODE),
     CommittedResult("codings.json", "benchmarks.studies.codings", FORMAT),
