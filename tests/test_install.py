@@ -22,7 +22,7 @@ ROOT = Path(__file__).parent.parent
 PYPROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
 EXTRAS = PYPROJECT["project"]["optional-dependencies"]
 # Not one of these is there after a plain `pip install nispcodec`.
-ABSENT = ("torch", "scipy", "igl", "embreex", "skimage", "xatlas", "rich", "trimesh")
+ABSENT = ("torch", "scipy", "igl", "embreex", "skimage", "xatlas", "rich", "trimesh", "pxr")
 # Whatever stands here runs without them; encoding and what it needs does not.
 PLAIN = ("core", "io", "format", "infer", "extract", "edit", "procedural", "metrics", "render")
 
@@ -78,6 +78,7 @@ LACKING = [
     ("batch {1} -o {2}", "encode"),
     ("encode {1} --unwrap -o {2}.nisp", "unwrap"),
     ("decode {0} --rebake 16 --resolution 16 --faces 100 -o {2}.glb", "unwrap"),
+    ("decode {0} --resolution 16 -o {2}.usdz", "usd"),
     ("render {0} --size 16 -o {2}.png", "render"),
     ("compare {1} {1}", "render"),
     ("sheet {1} {0} --size 32 -o {2}.png", "render"),
@@ -132,7 +133,7 @@ def test_an_extra_that_is_asked_for_has_what_is_needed() -> None:
 
 
 def test_all_is_every_extra_of_the_library() -> None:
-    assert EXTRAS["all"] == ["nispcodec[encode,torch,render,unwrap,gltf,trimesh,remote]"]
+    assert EXTRAS["all"] == ["nispcodec[encode,torch,render,unwrap,gltf,usd,trimesh,remote]"]
 
 
 def test_what_is_there_is_not_complained_about() -> None:

@@ -16,7 +16,10 @@ ROOT = Path(__file__).parent.parent
 RULES: dict[str, tuple[set[str], set[str]]] = {
     # A mesh knows how to save itself.
     "core": ({"numpy", "scipy", "PIL"}, {"io"}),
-    "io": ({"numpy", "PIL", "DracoPy", "meshoptimizer", "opengl_basisu", "trimesh"}, {"core"}),
+    "io": (
+        {"numpy", "PIL", "DracoPy", "meshoptimizer", "opengl_basisu", "pxr", "trimesh"},
+        {"core"},
+    ),
     "geometry": ({"numpy", "scipy", "igl"}, {"core"}),
     "dataset": ({"numpy", "scipy"}, {"core", "geometry"}),
     "simplify": (
@@ -292,6 +295,7 @@ TESTED_ELSEWHERE = {
     "io/write/gltf_tree.py": "io/test_writers.py",
     "io/write/losses.py": "io/test_writers.py",
     "io/write/npz.py": "core/test_sdf_grid.py",
+    "io/write/usd_material.py": "io/test_usdz.py",
     "io/write/trimesh_geometry.py": "test_trimesh_loader.py",
     "io/write/vertices.py": "io/test_writers.py",
     # Numbers that are known for the same small shapes.

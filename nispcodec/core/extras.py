@@ -11,7 +11,12 @@ from importlib.util import find_spec
 from nispcodec.core.errors import NispError
 
 # Packages that are installed by another name than they are imported by.
-DISTRIBUTIONS = {"igl": "libigl", "skimage": "scikit-image", "opengl_basisu": "opengl-basisu"}
+DISTRIBUTIONS = {
+    "igl": "libigl",
+    "skimage": "scikit-image",
+    "opengl_basisu": "opengl-basisu",
+    "pxr": "usd-core",
+}
 
 
 def require(*packages: str, extra: str, what_for: str) -> None:

@@ -18,10 +18,11 @@ from nispcodec.io.write.colors import untextured
 from nispcodec.io.write.glb import glb_bytes
 from nispcodec.io.write.gltf import gltf_files
 from nispcodec.io.write.gltf_compression import COMPRESSIONS
-from nispcodec.io.write.losses import gltf_losses, obj_losses, ply_losses, stl_losses
+from nispcodec.io.write.losses import gltf_losses, obj_losses, ply_losses, stl_losses, usdz_losses
 from nispcodec.io.write.obj import obj_files
 from nispcodec.io.write.ply import ply_files
 from nispcodec.io.write.stl import stl_bytes
+from nispcodec.io.write.usdz import usdz_bytes
 
 # OBJ and PLY name their images in lines of text.
 _CONTROL = re.compile(r"[\x00-\x1f\x7f]")
@@ -47,6 +48,7 @@ WRITERS: dict[str, Writer] = {
     ".ply": ply_files,
     **_alone(".stl", stl_bytes),
     ".obj": obj_files,
+    **_alone(".usdz", usdz_bytes),
 }
 SUFFIXES = tuple(WRITERS)
 """A new format is a file in `io/write` and a line here."""
@@ -58,6 +60,7 @@ LOSSES: dict[str, Callable[[TexturedMesh], Iterable[str]]] = {
     ".ply": ply_losses,
     ".stl": stl_losses,
     ".obj": obj_losses,
+    ".usdz": usdz_losses,
 }
 
 
@@ -123,7 +126,8 @@ def mesh_paths(
     `colored` is for a mesh that is written with colors. Raises MeshError as `write_mesh` does, for
     a suffix, and for colors in a format that holds none.
     """
-    names = tuple(replace(each, data=b"", mime="image/png") for each in textures)
+    # USD's packager takes no empty files.
+    names = tuple(replace(each, data=b"-", mime="image/png") for each in textures)
     mesh = replace(_triangle(), materials=tuple(materials), textures=names)
     colors = np.ones((3, 4), np.float32) if colored else None
     if colors is not None:

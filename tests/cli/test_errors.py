@@ -137,7 +137,7 @@ def test_a_mesh_that_cannot_be_read_is_named(
         ("nowhere/o.glb", "nowhere: expected a folder to write into, found none"),
         ("p.csv/o.glb", "p.csv: expected a folder to write into, found a file"),
         ("o.fbx", "o.fbx: expected .glb, "),
-        ("o", "o: expected .glb, .gltf, .ply, .stl, .obj, .npz, found no suffix"),
+        ("o", "o: expected .glb, .gltf, .ply, .stl, .obj, .usdz, .npz, found no suffix"),
         ("folder.glb", "folder.glb: expected a file to write, found a folder"),
     ],
 )

@@ -217,6 +217,8 @@ def test_far_and_tiny_meshes_keep_their_shape(
 def test_the_paths_are_known_before_the_mesh(
     mesh: TexturedMesh, tmp_path: Path, suffix: str, colored: bool
 ) -> None:
+    if suffix == ".usdz":
+        pytest.importorskip("pxr", reason="the extra `usd` is not installed")
     path = tmp_path / f"my.mesh{suffix.upper()}"
     colors = np.ones((len(mesh.positions), 4), np.float32) if colored else None
     if colored and suffix == ".stl":
@@ -380,7 +382,9 @@ def test_colors_that_do_not_fit_are_refused(mesh: TexturedMesh, tmp_path: Path) 
 
 
 def test_unknown_suffix_names_the_choices(mesh: TexturedMesh, tmp_path: Path) -> None:
-    with pytest.raises(MeshError, match=r"\.glb, \.gltf, \.ply, \.stl, \.obj, found '\.fbx'"):
+    with pytest.raises(
+        MeshError, match=r"\.glb, \.gltf, \.ply, \.stl, \.obj, \.usdz, found '\.fbx'"
+    ):
         write_mesh(mesh, tmp_path / "out.fbx")
     assert not list(tmp_path.iterdir())
 

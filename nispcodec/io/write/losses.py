@@ -40,10 +40,16 @@ def stl_losses(mesh: TexturedMesh) -> Iterator[str]:
         yield "texture coordinates, materials and images: STL holds geometry alone"
 
 
+def usdz_losses(mesh: TexturedMesh) -> Iterator[str]:
+    """Those of a USDZ."""
+    if any(texture.mime not in ("image/png", "image/jpeg") for texture in mesh.textures):
+        yield "the format of images that are neither PNG nor JPEG: they are converted to PNG"
+    yield from _filters(mesh.materials)
+
+
 def trimesh_losses(mesh: TexturedMesh) -> Iterator[str]:
     """Those of `NispModel.to_trimesh`."""
-    used = [each for made in mesh.materials for each in made.maps.values()]
-    if any(each.strength != 1 for each in used):
+    if any(each.strength != 1 for each in _used(mesh.materials)):
         yield "strengths of maps: trimesh has none"
     yield from _sampling(mesh.materials, {("repeat", "repeat")}, "trimesh repeats images")
 
@@ -58,11 +64,18 @@ def _maps(mesh: TexturedMesh, held: list[str]) -> Iterator[str]:
 def _sampling(
     materials: Iterable[Material], wraps: set[tuple[str, str]], rule: str
 ) -> Iterator[str]:
-    used: list[TextureMap] = [each for made in materials for each in made.maps.values()]
-    if any(each.wrap not in wraps for each in used):
+    if any(each.wrap not in wraps for each in _used(materials)):
         yield f"wraps: {rule}"
-    if any(each.filter == "nearest" for each in used):
+    yield from _filters(materials)
+
+
+def _filters(materials: Iterable[Material]) -> Iterator[str]:
+    if any(each.filter == "nearest" for each in _used(materials)):
         yield "the filter nearest: images are shown smoothly"
+
+
+def _used(materials: Iterable[Material]) -> list[TextureMap]:
+    return [each for made in materials for each in made.maps.values()]
 
 
 def _is_masked(material: Material) -> bool:
