@@ -66,22 +66,23 @@ function halvesOf(cell, size) {
 
 /** How far each cell is from the nearest of some (two sweeps over all neighbors). @param {number[]} cells @param {number} size */
 function distances(cells, size) {
-  const away = new Uint8Array(size ** 3).fill(255);
-  for (const cell of cells) away[cell] = 0;
-  const before = [];
-  for (let k = 0; k < 13; k++) before.push([(k % 3) - 1, (Math.floor(k / 3) % 3) - 1, Math.floor(k / 9) - 1]);
-  for (const sign of [1, -1]) {
-    for (let i = 0; i < away.length; i++) {
-      const cell = sign === 1 ? i : away.length - 1 - i;
-      const [x, y, z] = [cell % size, Math.floor(cell / size) % size, Math.floor(cell / size ** 2)];
-      let least = away[cell];
-      for (const [dx, dy, dz] of before) {
-        const [nx, ny, nz] = [x + sign * dx, y + sign * dy, z + sign * dz];
-        if (Math.min(nx, ny, nz) < 0 || Math.max(nx, ny, nz) >= size) continue;
-        least = Math.min(least, away[(nz * size + ny) * size + nx] + 1);
-      }
-      away[cell] = least;
+  // With a border of cells that nothing is near, so that all have neighbors.
+  const wide = size + 2;
+  const places = new Int32Array(size ** 3).map((_, cell) => {
+    const [x, y, z] = [cell % size, Math.floor(cell / size) % size, Math.floor(cell / size ** 2)];
+    return ((z + 1) * wide + y + 1) * wide + x + 1;
+  });
+  const away = new Uint8Array(wide ** 3).fill(255);
+  for (const cell of cells) away[places[cell]] = 0;
+  const before = Array.from({ length: 13 }, (_, k) => ((Math.floor(k / 9) - 1) * wide + (Math.floor(k / 3) % 3) - 1) * wide + (k % 3) - 1);
+  const sweep = (/** @type {Int32Array} */ order, /** @type {number} */ sign) => {
+    for (const place of order) {
+      let least = away[place];
+      for (const step of before) least = Math.min(least, away[place + sign * step] + 1);
+      away[place] = least;
     }
-  }
-  return away;
+  };
+  sweep(places, 1);
+  sweep(places.toReversed(), -1);
+  return new Uint8Array(places.map((place) => away[place]));
 }

@@ -111,13 +111,15 @@ export class ViewerPage {
     const traceable = widths.length > 0 && Math.max(...widths) <= WIDEST_FIELD;
     input("field").disabled = !traceable;
     input("resolution").disabled = !widths.length;
-    if (traceable) this.pane.renderer.setField(this.model);
-    else input("field").checked = false;
+    if (!traceable) input("field").checked = false;
     document.title = element("name").textContent = name;
     showRows("bytes", byteRows(parsed, file.length));
     showRows("facts", factRows(parsed, parseTime));
+    const meshed = this.remesh(file);
+    // While the worker extracts.
+    if (traceable) this.pane.renderer.setField(this.model);
     this.choose();
-    await this.remesh(file);
+    await meshed;
   }
 
   /** Extracts anew; the last call wins. @param {Uint8Array|null} file a new one, or null */

@@ -24,14 +24,15 @@ void main() {
   vec3 direction = normalize(axes * vec3((place + jitter) * half_size, -1.0));
   nispCalls = 0;
   NispHit hit = nispTrace(eye, direction);
+  float calls = float(nispCalls);
   out_hit = vec4(-1.0);
-  out_normal = vec4(0.0, 0.0, 0.0, float(nispCalls));
+  out_normal = vec4(0.0, 0.0, 0.0, calls);
   out_uv = out_slopes = vec4(0.0);
   if (hit.distance < 0.0) return;
   nispDescribe(hit, direction, uv_map);
   vec4 owner = nispTexel(chart_table + hit.chart);
   out_hit = vec4(hit.distance, float(hit.chart), owner.x, owner.y);
-  out_normal = vec4(hit.normal, float(nispCalls));
+  out_normal = vec4(hit.normal, calls);
   out_uv = vec4(hit.uv, hit.slope_u.xy);
   out_slopes = vec4(hit.slope_u.z, hit.slope_v);
 }`;
