@@ -147,4 +147,5 @@ RESULTS = (
     CommittedResult("random_assets.json", "benchmarks.studies.random_assets", ENCODE),
     CommittedResult("sdf_grid.json", "benchmarks.studies.sdf_grid", ROUND_TRIP),
     CommittedResult("web_decoder.json", "benchmarks.studies.web_decoder", ("web",)),
+    CommittedResult("web_pages.json", "benchmarks.studies.web_pages", ("web",)),
 )

@@ -2,11 +2,11 @@
 
     python -m benchmarks.studies.web_pages --models DIR --assets ../shared/assets [--only spot]
 
-DIR holds NAME.nisp for the assets NAME. Wants node, Chromium, and playwright-core by `npm ci` in web/.
-Seconds are from the start of navigation on, the least of several runs: Chromium draws without a
-graphics processor, and other programs slow it. Calls are those of the signed distance's network while
-a ray is traced, in the mean of all pixels, with the grid of free space and without it. Results are
-kept asset by asset.
+DIR holds NAME.nisp for the assets NAME. Wants node, Chromium, and playwright-core by `npm ci` in
+web/. Seconds are from the start of navigation on, the least of several runs: Chromium draws without
+a graphics processor, and other programs slow it. Calls are those of the signed distance's network
+while a ray is traced, in the mean of all pixels, with the grid of free space and without. Results
+are kept asset by asset.
 """
 
 from __future__ import annotations
@@ -78,7 +78,7 @@ def _in_chromium(page: str) -> Record:
     with TemporaryDirectory() as folder:
         path = Path(folder, "page.html")
         path.write_text(page)
-        command = ["node", script, chromium, path, str(RUNS), str(PICTURE)]
+        command = ["node", str(script), chromium, str(path), str(RUNS), str(PICTURE)]
         run = subprocess.run(command, capture_output=True, text=True, check=True)
     found: Record = json.loads(run.stdout)
     return found
