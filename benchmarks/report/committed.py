@@ -137,6 +137,11 @@ RESULTS = (
         "benchmarks.studies.decoded_files",
         ("nispcodec/extract", "nispcodec/io/write"),
     ),
+    CommittedResult(
+        "valid_gltf.json",
+        "benchmarks.studies.valid_gltf",
+        ("nispcodec/io/write", "nispcodec/extract"),
+    ),
     CommittedResult("rounding_loss.json", "benchmarks.studies.rounding_loss", ROUND_TRIP),
     CommittedResult("training_step.json", "benchmarks.studies.training_step", ("nispcodec/train",)),
     CommittedResult(

@@ -9,8 +9,8 @@ from nispcodec.core.arrays import Float32Array
 from nispcodec.core.asset import TexturedMesh
 from nispcodec.io.write.gltf_compression import compressed
 from nispcodec.io.write.gltf_tree import MIMES, gltf_tree, uri
-from nispcodec.io.write.known_images import known
 from nispcodec.io.write.names import image_names
+from nispcodec.io.write.plain_images import plain_image
 
 
 def gltf_files(
@@ -30,7 +30,8 @@ def gltf_files(
         tree, binary = compressed(tree, binary, compress)
     tree["buffers"][0]["uri"] = uri(f"{stem}.bin")
     used = {each.texture for material in mesh.materials for each in material.maps.values()}
-    images = {names[number]: known(mesh.textures[number], MIMES).data for number in sorted(used)}
+    shown = {names[number]: plain_image(mesh.textures[number], MIMES) for number in sorted(used)}
+    images = {name: image.data for name, image in shown.items()}
     text = json.dumps(tree, indent=1).encode()
     return images | {f"{stem}.bin": binary, f"{stem}.gltf": text}
 

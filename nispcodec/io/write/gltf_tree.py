@@ -12,7 +12,7 @@ from nispcodec.core.arrays import AnyArray, Float32Array, IndexArray
 from nispcodec.core.asset import Material, Texture, TexturedMesh, TextureMap
 from nispcodec.core.slots import BY_NAME, Slot
 from nispcodec.core.texture import srgb_to_linear
-from nispcodec.io.write.known_images import known
+from nispcodec.io.write.plain_images import plain_image
 from nispcodec.io.write.vertices import Normals, groups, origin, shading_normals, split_vertices
 
 Json = dict[str, Any]
@@ -158,7 +158,7 @@ class _Builder:
 
     def image(self, number: int, texture: Texture) -> int:
         if number not in self.images:
-            image = known(texture, MIMES)
+            image = plain_image(texture, MIMES)
             at: Json = (
                 {"uri": uri(self.files[number])}
                 if self.files

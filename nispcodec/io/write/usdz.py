@@ -18,7 +18,7 @@ from nispcodec.core.asset import Texture, TexturedMesh
 from nispcodec.core.errors import NispError
 from nispcodec.core.extras import require
 from nispcodec.core.texture import srgb_to_linear
-from nispcodec.io.write.known_images import known
+from nispcodec.io.write.plain_images import plain_image
 from nispcodec.io.write.usd_material import define_material, identifiers
 from nispcodec.io.write.vertices import (
     Normals,
@@ -68,7 +68,7 @@ def _packaged(folder: Path, mesh: TexturedMesh, colors: Float32Array | None) -> 
 
 def _write_images(folder: Path, textures: Sequence[Texture]) -> list[str]:
     """Write an image for each texture -> their names."""
-    images = [known(each, SUFFIXES) for each in textures]
+    images = [plain_image(each, SUFFIXES) for each in textures]
     stems = identifiers(Path(each.name).stem for each in images)
     names = [f"{stem}{SUFFIXES[each.mime]}" for stem, each in zip(stems, images, strict=True)]
     for name, image in zip(names, images, strict=True):
