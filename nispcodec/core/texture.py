@@ -156,11 +156,11 @@ def _reencoded(texture: Texture, kind: str, quality: int, is_data: bool) -> Text
 
 
 def encoded_texture(
-    name: str, pixels: Uint8Array, kind: str, quality: int, is_data: bool
+    name: str, pixels: Uint8Array, kind: str, quality: int, is_data: bool, tune: str | None = None
 ) -> Texture:
     """Pixels as a texture (`encode_image`), whose name gets the suffix of its kind."""
     suffix = "jpg" if kind == "jpeg" else kind
-    data = encode_image(pixels, kind, quality, is_data)
+    data = encode_image(pixels, kind, quality, is_data, tune)
     return Texture(f"{PurePath(name).stem}.{suffix}", data, f"image/{kind}")
 
 
@@ -169,18 +169,24 @@ def image_bytes(texture: Texture) -> Uint8Array:
     return np.rint(decode_image(texture) * 255).astype(np.uint8)
 
 
-def encode_image(pixels: Uint8Array, kind: str, quality: int, is_data: bool = False) -> bytes:
+def encode_image(
+    pixels: Uint8Array, kind: str, quality: int, is_data: bool = False, tune: str | None = None
+) -> bytes:
     """The bytes of an image file of pixels (h, w, 4) RGBA, sRGB-encoded, top row first.
 
     `kind` is "png", which ignores `quality`, "webp", "avif" or "jpeg"; `quality` is 1 to 100. Alpha
     is left out where it is 255 everywhere. Lossy formats hold color at half the resolution; where
-    `is_data` they hold it at the full one, and WebP, which cannot, is lossless.
+    `is_data` they hold it at the full one, and WebP, which cannot, is lossless. `tune`, of AVIF
+    alone, is what its bytes are best by: "psnr", "ssim", or None for what people say of pictures.
     """
     import PIL.Image
 
+    options = dict(_SHARP.get(kind, {})) if is_data else {}
+    if tune:
+        options["advanced"] = {"tune": tune}
     file = io.BytesIO()
     image = PIL.Image.fromarray(pixels[..., :3] if _is_opaque(pixels) else pixels)
-    image.save(file, kind, quality=quality, **(_SHARP.get(kind, {}) if is_data else {}))
+    image.save(file, kind, quality=quality, **options)
     return file.getvalue()
 
 

@@ -19,6 +19,9 @@ from nispcodec.format.constants import TXTR
 from nispcodec.simplify.errors import Errors
 from nispcodec.simplify.ladder import Candidate
 
+Loss = Callable[[Document], float]
+"""What is lost by a document, by whatever counts: the less, the better."""
+
 Made = Callable[[Field | None, tuple[MeshPart, ...]], Document]
 """The document of a field and mesh parts, with the asset's materials and images."""
 
@@ -42,6 +45,8 @@ class Choice:
 
     With `geometry` "auto", a form that is estimated to be clearly larger is not made at all.
     `halves` makes two of an asset whose bodies are sorted; `split` are those that are to be made.
+    `loss`, where there is one, says which triangles are best, and which form, in the place of bytes
+    and errors.
     """
 
     def __init__(
@@ -51,9 +56,10 @@ class Choice:
         tuning: Tuning,
         halves: Callable[[Sorted], Split | None],
         document: Made,
+        loss: Loss | None = None,
     ) -> None:
         self._form, self._config, self._tuning = form, config, tuning
-        self._halves, self._document = halves, document
+        self._halves, self._document, self._loss = halves, document, loss
         self.split: Split | None = None
         self._forms = tuning.forms
         self._estimate, self._field_bytes = 0.0, 0.0
@@ -118,6 +124,8 @@ class Choice:
     def after_fit(self, field: Document, errors: Errors) -> Chosen:
         """The fitted document, whose surface has these errors, or triangles that are better."""
         size = own_bytes(field)
+        if self._open and self._loss:
+            return self._of_less_loss(field, errors, self._loss)
         if self._open and errors.made_up.share > self._forms.notable_far:
             instead = self._instead(field, size, errors)
             if instead:
@@ -135,6 +143,17 @@ class Choice:
             cost = self._forms.error_cost
             better = other <= target and cost(found.errors) < cost(errors)
         return Chosen(meshes, found.errors, size) if better else Chosen(field, errors, other)
+
+    def _of_less_loss(self, field: Document, errors: Errors, loss: Loss) -> Chosen:
+        """The fitted document, or the triangles of the least loss."""
+        found = self._of_least_loss(loss)
+        meshes = self._document(None, found.parts)
+        if loss(meshes) < loss(field):
+            return Chosen(meshes, found.errors, own_bytes(field))
+        return Chosen(field, errors, own_bytes(meshes))
+
+    def _of_least_loss(self, loss: Loss) -> Candidate:
+        return self._form.of_least_loss(lambda found: loss(self._document(None, found.parts)))
 
     def _instead(self, field: Document, size: int, errors: Errors) -> Chosen | None:
         """Triangles in place of a field that makes up surface, unless they take many more bytes.
@@ -161,7 +180,7 @@ class Choice:
         Raises FitError for a target error that they miss, NispError for a target size that is too
         small.
         """
-        found = self._wanted()
+        found = self._of_least_loss(self._loss) if self._loss else self._wanted()
         return Chosen(self._document(None, found.parts), found.errors, self._field_bytes)
 
     def _rival(self, size: int, errors: Errors) -> Candidate | None:

@@ -24,7 +24,7 @@ LEAST, MOST = 1, 100
 class CompactImage:
     """One image of an asset, at any quality; what was coded once is kept.
 
-    Data maps keep all channels as sharp. Raises MeshError for a texture that does not decode.
+    All channels are as sharp. Raises MeshError for a texture that does not decode.
     """
 
     def __init__(
@@ -36,16 +36,18 @@ class CompactImage:
         self._pixels = image_bytes(self.original)
         self._used = used_texels(mesh, number, *self._pixels.shape[:2])
         self._padded: Uint8Array | None = None
-        self._coded: dict[int, Texture] = {}
+        self._coded: dict[tuple[int, str], Texture] = {}
 
-    def at(self, quality: int) -> Texture:
-        """As AVIF, or as it was where that takes no more bytes."""
-        if quality not in self._coded:
-            name = self.original.name
-            found = encoded_texture(name, self._best_padding(), "avif", quality, self.is_data)
+    def at(self, quality: int, tune: str | None = None) -> Texture:
+        """As AVIF, or as it was where that takes no more bytes; `tune` other than is usual."""
+        key = quality, tune or self._config.tune
+        if key not in self._coded:
+            found = encoded_texture(
+                self.original.name, self._best_padding(), "avif", quality, True, key[1]
+            )
             smaller = len(found.data) < len(self.original.data)
-            self._coded[quality] = found if smaller else self.original
-        return self._coded[quality]
+            self._coded[key] = found if smaller else self.original
+        return self._coded[key]
 
     def near(self, quality: int) -> Texture:
         """As `at`, but data of no error larger than `most_error`, without loss if need be."""
@@ -73,7 +75,7 @@ class CompactImage:
         return self._padded
 
     def _typical_bytes(self, pixels: Uint8Array) -> int:
-        return len(encode_image(pixels, "avif", self._config.typical, self.is_data))
+        return len(encode_image(pixels, "avif", self._config.typical, True, self._config.tune))
 
 
 def compact_images(

@@ -12,10 +12,14 @@ from nispcodec.core.arrays import Float64Array
 from nispcodec.core.asset import Texture
 from nispcodec.core.texture import named_apart
 from nispcodec.encode.compact_images import LEAST, MOST, CompactImage
+from nispcodec.encode.config import CompactConfig
 
 QUALITIES = np.arange(LEAST, MOST + 1)
 NOTHING = 1e-12
 """A squared error so small that its logarithm is still a number."""
+
+Coding = tuple[int, str | None]
+"""A quality, and what it is tuned to."""
 
 ErrorOf = Callable[[tuple[Texture, ...]], float]
 
@@ -40,8 +44,10 @@ class ImageShares:
     by them.
     """
 
-    def __init__(self, images: Sequence[CompactImage]) -> None:
-        self._images = images
+    def __init__(
+        self, images: Sequence[CompactImage], config: CompactConfig = CompactConfig()
+    ) -> None:
+        self._images, self._in_between = images, config.in_between
         self._kinds = [[image for image in images if image.is_data == kind] for kind in (0, 1)]
         self._curves: list[Curve] = []
 
@@ -53,7 +59,7 @@ class ImageShares:
     @property
     def smallest(self) -> tuple[Texture, ...]:
         """The images at the lowest quality."""
-        return self._at(LEAST, LEAST)
+        return self._at((LEAST, None), (LEAST, None))
 
     @property
     def original(self) -> int:
@@ -81,13 +87,21 @@ class ImageShares:
         data = self._largest(1, most - self._bytes(0, LEAST), expected)
         color = self._largest(0, most - self._bytes(1, data), color_curve.highest)
         data = self._largest(1, most - self._bytes(0, color), data_curve.highest)
-        return self._at(color, data)
+        colors = self._filled(0, color, most - self._bytes(1, data))
+        return self._at(colors, self._filled(1, data, most - self._bytes(0, *colors)))
 
-    def _at(self, color: int, data: int) -> tuple[Texture, ...]:
-        return named_apart([each.at(data if each.is_data else color) for each in self._images])
+    def _filled(self, kind: int, quality: int, most: float) -> Coding:
+        """A quality, or how else a kind takes more of so many bytes."""
+        lower = range(max(LEAST, quality - self._in_between), quality)
+        ways: list[Coding] = [(quality, None), *((each, "psnr") for each in lower)]
+        fit = [each for each in ways if self._bytes(kind, *each) <= most]
+        return max(fit, key=lambda each: self._bytes(kind, *each), default=ways[0])
 
-    def _bytes(self, kind: int, quality: int) -> int:
-        return sum(len(image.at(quality).data) for image in self._kinds[kind])
+    def _at(self, color: Coding, data: Coding) -> tuple[Texture, ...]:
+        return named_apart([each.at(*(data if each.is_data else color)) for each in self._images])
+
+    def _bytes(self, kind: int, quality: int, tune: str | None = None) -> int:
+        return sum(len(image.at(quality, tune).data) for image in self._kinds[kind])
 
     def _curve(self, kind: int, qualities: Sequence[int], most: float, error_of: ErrorOf) -> Curve:
         if not self._kinds[kind]:

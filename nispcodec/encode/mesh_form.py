@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from functools import cached_property
 
@@ -20,6 +20,7 @@ from nispcodec.format import mesh
 from nispcodec.geometry.analysis import Analysis
 from nispcodec.geometry.shown import Shown, shown
 from nispcodec.simplify.closest import Tree
+from nispcodec.simplify.descent import least_loss
 from nispcodec.simplify.errors import Errors, Original
 from nispcodec.simplify.ladder import Candidate, Simplifier
 from nispcodec.simplify.search import best_for
@@ -135,6 +136,11 @@ class MeshForm:
         """The nearest candidate found of at most so many bytes; the smallest where none is."""
         self._progress(Progress(stage="triangles"))
         return nearest_of_size(self.simplifier, most_bytes, self._config)
+
+    def of_least_loss(self, loss: Callable[[Candidate], float]) -> Candidate:
+        """The candidate that loses least, of those a search looks at: by pictures, say."""
+        self._progress(Progress(stage="triangles"))
+        return least_loss(self.simplifier, loss, self._config.descent)
 
     def fewest(self) -> Candidate:
         """The candidate of the fewest faces that are made."""

@@ -11,7 +11,7 @@ from nispcodec.core.document import Document, Field
 from nispcodec.core.mesh_part import MeshPart
 from nispcodec.core.progress import Listener, Progress, silent
 from nispcodec.encode.appearance import appearance
-from nispcodec.encode.choice import Choice, Chosen
+from nispcodec.encode.choice import Choice, Chosen, Loss
 from nispcodec.encode.config import EncodeConfig, Tuning
 from nispcodec.encode.far_surface import far_warnings
 from nispcodec.encode.field_form import FieldForm
@@ -41,8 +41,8 @@ def encode(
     """
     config, numbers = config or EncodeConfig(), tuning or Tuning()
 
-    def encoded(how: EncodeConfig, listen: Listener) -> NispModel:
-        return _encoded(mesh, how, listen, numbers)
+    def encoded(how: EncodeConfig, listen: Listener, loss: Loss | None = None) -> NispModel:
+        return _encoded(mesh, how, listen, numbers, loss)
 
     with on_cores(config.threads):
         if config.target_total is not None:
@@ -51,7 +51,11 @@ def encode(
 
 
 def _encoded(
-    mesh: TexturedMesh, config: EncodeConfig, progress: Listener, tuning: Tuning
+    mesh: TexturedMesh,
+    config: EncodeConfig,
+    progress: Listener,
+    tuning: Tuning,
+    loss: Loss | None = None,
 ) -> NispModel:
     progress = with_overall(progress, config, tuning.training)
     engine = choose_engine(config.engine, config.device, config.preset == "paper", progress)
@@ -67,7 +71,7 @@ def _encoded(
     def document(held: Field | None = None, parts: tuple[MeshPart, ...] = ()) -> Document:
         return Document(frame, materials, textures, held, parts, unmeasured(config))
 
-    choice = Choice(form, config, tuning, partial(split, field), document)
+    choice = Choice(form, config, tuning, partial(split, field), document, loss)
     if config.geometry == "mesh":
         chosen = choice.triangles()
         info = measured(chosen, analysis, config)

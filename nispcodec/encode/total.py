@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from math import inf
 
 import numpy as np
 
@@ -13,6 +14,7 @@ from nispcodec.core.document import Document
 from nispcodec.core.errors import NispError
 from nispcodec.core.extras import require
 from nispcodec.core.progress import Listener, Progress
+from nispcodec.encode.choice import Loss
 from nispcodec.encode.compact_images import compact_images
 from nispcodec.encode.config import EncodeConfig, TotalConfig
 from nispcodec.encode.image_shares import ImageShares
@@ -23,7 +25,7 @@ from nispcodec.render.camera import turntable
 from nispcodec.render.remembered import RememberedScene
 from nispcodec.render.views import on_white, render_views, scene_of
 
-Geometry = Callable[[EncodeConfig, Listener], NispModel]
+Geometry = Callable[[EncodeConfig, Listener, Loss | None], NispModel]
 
 
 def encode_to_total(
@@ -35,14 +37,14 @@ def encode_to_total(
 ) -> NispModel:
     """The asset in `config.target_total` bytes at most; `geometry` encodes it without textures.
 
-    The share of the images is what the preset's geometry leaves, or another where pictures of it
-    are expected to lose clearly less and do. Raises NispError, before anything is fitted, for a
-    total that the images alone do not allow, else for one that leaves the geometry too little.
+    Pictures decide, with images in the bytes that are left: which triangles are best, and whether
+    networks are better. Where these are, their size is what the preset has, or another whose
+    pictures are expected to lose clearly less and do. Raises NispError for a total that leaves the
+    geometry too little; before anything is fitted, if the images alone do not allow it.
     """
     if not mesh.textures:
-        return geometry(
-            replace(config, target_total=None, target_size=config.target_total), progress
-        )
+        how = replace(config, target_total=None, target_size=config.target_total)
+        return geometry(how, progress, None)
     require("embreex", "igl", extra="render", what_for="a target total")
     progress(Progress(stage="textures", overall=0.0))
     shares = ImageShares(compact_images(mesh))
@@ -106,8 +108,9 @@ class _Totals:
         size = self.better_size(first)
         if not size:
             return [first]
+        networks = replace(self, config=replace(self.config, geometry="field"))
         try:
-            return [first, self.split(size, _within(progress, *self.tuning.done[1:]))]
+            return [first, networks.split(size, _within(progress, *self.tuning.done[1:]))]
         except NispError as why:
             progress(Progress(stage="fit", note=str(why), overall=self.tuning.done[-1]))
             return [first]
@@ -117,14 +120,26 @@ class _Totals:
         found, room = self._document(size, progress), self.total - self.shares.least
         if not size and self._own(found) > self.tuning.filled * room:
             found = self._document(self.tuning.filled * room, progress)
+        if self._own(found) > room:
+            raise NispError(
+                f"target total: {room:,.0f} bytes are left for geometry: expected at least "
+                f"{self._own(found):,}"
+            )
         progress(Progress(stage="surface", overall=1.0))
-        scene = RememberedScene(scene_of(NispModel(found).to_mesh(), self.pictures.frame))
+        scene = self._scene(found)
         return Split(found, self._own(found), self.pictures.error(scene), scene)
 
+    def loss(self, document: Document) -> float:
+        """About the squared error of pictures of a geometry with images in the bytes it leaves."""
+        dressed = self._dressed(document)
+        images = self.shares.error(self.total - self._own(dressed))
+        return images + self.pictures.error(self._scene(dressed)) if images < inf else inf
+
     def better_size(self, found: Split) -> float:
-        """Bytes of geometry that are expected to be clearly better than those of a split, or 0."""
-        tuning = self.tuning
-        slope = tuning.field_slope if found.document.field else tuning.mesh_slope
+        """Bytes of networks that are expected to be clearly better than those of a split, or 0."""
+        if not found.document.field or found.document.meshes:
+            return 0.0
+        tuning, slope = self.tuning, self.tuning.field_slope
         now = found.error + self.shares.error(self.total - found.bytes)
         expected = {
             found.bytes * 2**octave: found.error * 2 ** (-slope * octave)
@@ -136,22 +151,33 @@ class _Totals:
 
     def whole(self, split: Split) -> tuple[NispModel, float]:
         """The split with images in the bytes that it leaves, and what pictures of it lose."""
-        textures = self.shares.fitted(self.total - split.bytes - self.tuning.measured_bytes)
-        error = self.pictures.error(split.scene.with_textures(textures))
-        info = {**split.document.info, "rendered_psnr": float(f"{psnr(error, 1.0):.4g}")}
-        return NispModel(replace(split.document, textures=textures, info=info)), error
+        room, over = self.total - split.bytes, float(self.tuning.measured_bytes)
+        while over > 0:
+            room -= over
+            textures = self.shares.fitted(room)
+            error = self.pictures.error(split.scene.with_textures(textures))
+            info = {**split.document.info, "rendered_psnr": float(f"{psnr(error, 1.0):.4g}")}
+            document = replace(split.document, textures=textures, info=info)
+            over = len(pack(document)) - self.total if room > self.shares.least else 0.0
+        return NispModel(document), error
 
     def _document(self, size: float, progress: Listener) -> Document:
         config = replace(self.config, target_total=None, target_size=size or None, textures=False)
         try:
-            found = self.geometry(config, progress).document
+            found = self.geometry(config, progress, self.loss).document
         except NispError as why:
             if not size:
                 raise
             raise NispError(
                 f"target total: {size:,.0f} bytes are left for geometry: {why}"
             ) from why
-        return replace(found, materials=self.mesh.materials, textures=self.mesh.textures)
+        return self._dressed(found)
+
+    def _dressed(self, document: Document) -> Document:
+        return replace(document, materials=self.mesh.materials, textures=self.mesh.textures)
+
+    def _scene(self, document: Document) -> RememberedScene:
+        return RememberedScene(scene_of(NispModel(document).to_mesh(), self.pictures.frame))
 
     def _own(self, document: Document) -> int:
         """Bytes besides those of the images, with their names."""

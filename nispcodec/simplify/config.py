@@ -166,3 +166,30 @@ class SearchConfig:
     helping: float = 0.9
     uv_blur: float = 1.5e-3
     nearly_all: float = 0.6
+
+
+@dataclass(frozen=True)
+class DescentConfig:
+    """How the candidate of the least loss is found, step by step.
+
+    growth       of the faces from one rung to the next, below all of them
+    first_faces  about as many has the first candidate, ...
+    first_bits   ... and so many bits of positions and of UVs: spot's pictures were best for their
+                 bytes at 10 or 11 bits, from an eighth of the faces to all of them
+    least_bits   of positions and of UVs
+    steps        of rungs, bits and UV bits, in turn
+    trials       candidates at most: each takes a second or two
+    """
+
+    growth: float = 1.41
+    first_faces: int = 2000
+    first_bits: tuple[int, int] = (10, 10)
+    least_bits: int = 5
+    steps: tuple[tuple[int, int, int], ...] = (
+        (3, 0, 0),
+        (1, 0, 0),
+        (0, 1, 1),
+        (0, 0, 1),
+        (0, 1, 0),
+    )
+    trials: int = 24

@@ -219,3 +219,26 @@ def test_images_do_not_count() -> None:
     assert own_bytes(FIELD) == own_bytes(
         replace(FIELD, textures=(replace(FIELD.textures[0], data=bytes(999)),))
     )
+
+
+@pytest.mark.parametrize(("of_mesh", "taken"), [(1.0, "mesh"), (3.0, "field")])
+def test_what_loses_less_is_taken_whatever_its_size(of_mesh: float, taken: str) -> None:
+    def loss(document: Document) -> float:
+        return 2.0 if document.field else of_mesh
+
+    form: Any = Told(1e9, of_least_loss=candidate(OFF))
+    found = Choice(form, EncodeConfig(), TUNING, lambda _: None, as_mesh, loss)
+    chosen = found.after_fit(FIELD, EXACT)
+    assert ("field" if chosen.document.field else "mesh") == taken
+    assert found.triangles().errors == OFF
+
+
+def test_networks_that_were_asked_for_stay_whatever_loses_less() -> None:
+    form: Any = Told(of_least_loss=candidate())
+    how = EncodeConfig(geometry="field")
+
+    def loss(document: Document) -> float:
+        return 1.0 if document.field else 0.0
+
+    found = Choice(form, how, TUNING, lambda _: None, as_mesh, loss)
+    assert found.after_fit(FIELD, OFF).document.field

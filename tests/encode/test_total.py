@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 from functools import cache
 
@@ -12,11 +13,13 @@ from nispcodec.core.asset import Material, TexturedMesh, TextureMap
 from nispcodec.core.document import Document
 from nispcodec.core.errors import NispError
 from nispcodec.core.progress import Listener, Progress, silent
+from nispcodec.encode.choice import Loss
 from nispcodec.encode.config import EncodeConfig, TotalConfig
 from nispcodec.encode.recipe import encode
 from nispcodec.encode.total import encode_to_total
 from nispcodec.format import pack
 from nispcodec.model import NispModel
+from tests import tiny
 from tests.encode.test_compact_images import noisy
 from tests.geometry.shapes import box_asset
 
@@ -37,26 +40,39 @@ def box() -> Document:
     return encode(asset(), EncodeConfig(geometry="mesh", textures=False)).document
 
 
-class Geometry:
-    """The triangles of a box, with ballast up to about the size that is asked for, or `usual`."""
+@cache
+def octahedron() -> Document:
+    """Networks, with the charts of a box's place."""
+    document = tiny.document(frame=box().frame)
+    return replace(document, materials=box().materials, textures=())
 
-    def __init__(self, usual: int) -> None:
-        self.usual = usual
+
+class Geometry:
+    """Triangles of a box, or networks, and ballast up to the size that is asked for, or `usual`."""
+
+    def __init__(self, usual: int, made: Callable[[], Document] = box) -> None:
+        self.usual, self.made = usual, made
         self.asked: list[EncodeConfig] = []
 
-    def __call__(self, config: EncodeConfig, listen: Listener) -> NispModel:
+    def __call__(
+        self, config: EncodeConfig, listen: Listener, loss: Loss | None = None
+    ) -> NispModel:
         self.asked.append(config)
         listen(Progress(stage="triangles", overall=1.0))
-        size = max(0, int(config.target_size or self.usual) - len(pack(box())))
+        size = max(0, int(config.target_size or self.usual) - len(pack(self.made())))
         signs = "".join(map(chr, np.random.default_rng(0).integers(0x21, 0x7E, size)))
         ballast = {f"{start}": signs[start : start + 900] for start in range(0, size, 900)}
-        return NispModel(replace(box(), info=ballast))
+        return NispModel(replace(self.made(), info=ballast))
 
 
 def encoded(
-    total: float, tuning: TotalConfig = NEVER, usual: int = 600, listen: Listener = silent
+    total: float,
+    tuning: TotalConfig = NEVER,
+    usual: int = 600,
+    listen: Listener = silent,
+    made: Callable[[], Document] = box,
 ) -> tuple[Document, Geometry]:
-    geometry = Geometry(usual)
+    geometry = Geometry(usual, made)
     how = EncodeConfig(geometry="mesh", target_total=total)
     return encode_to_total(asset(), how, tuning, geometry, listen).document, geometry
 
@@ -75,26 +91,29 @@ def test_geometry_that_leaves_images_no_room_is_made_smaller() -> None:
     assert [bool(each.target_size) for each in geometry.asked] == [False, True]
 
 
-def test_another_share_is_tried_and_the_better_one_taken() -> None:
-    one, _ = encoded(4_000, usual=1_000)
-    best, geometry = encoded(4_000, ALWAYS, usual=1_000)
-    assert len(geometry.asked) == 2
-    assert len(pack(best)) <= 4_000
-    # The ballast is worth nothing: with less of it images are better.
-    assert (geometry.asked[1].target_size or 0) < 1_000
-    assert float(best.info["rendered_psnr"]) > float(one.info["rendered_psnr"])
+def test_networks_of_another_size_are_tried_and_the_better_ones_taken() -> None:
+    twice = replace(ALWAYS, octaves=(1,))
+    one, _ = encoded(5_000, usual=1_700, made=octahedron)
+    best, geometry = encoded(5_000, twice, usual=1_700, made=octahedron)
+    assert [each.geometry for each in geometry.asked] == ["mesh", "field"]
+    assert (geometry.asked[1].target_size or 0) > 1_700
+    assert len(pack(best)) <= 5_000
+    assert float(best.info["rendered_psnr"]) >= float(one.info["rendered_psnr"])
 
 
 def test_a_share_that_geometry_cannot_have_changes_nothing() -> None:
     class Stubborn(Geometry):
-        def __call__(self, config: EncodeConfig, listen: Listener) -> NispModel:
+        def __call__(
+            self, config: EncodeConfig, listen: Listener, loss: Loss | None = None
+        ) -> NispModel:
             if config.target_size:
                 raise NispError("target size: expected more")
-            return super().__call__(config, listen)
+            return super().__call__(config, listen, loss)
 
-    how = EncodeConfig(target_total=4_000)
-    found = encode_to_total(asset(), how, ALWAYS, Stubborn(600), silent).document
-    assert found == encoded(4_000)[0]
+    how = EncodeConfig(target_total=5_000)
+    stubborn = Stubborn(1_700, octahedron)
+    found = encode_to_total(asset(), how, replace(ALWAYS, octaves=(1,)), stubborn, silent).document
+    assert found == encoded(5_000, usual=1_700, made=octahedron)[0]
 
 
 def test_images_that_have_room_stay_as_they_came() -> None:
@@ -118,6 +137,37 @@ def test_without_images_the_total_is_for_geometry() -> None:
     encode_to_total(bare, EncodeConfig(target_total=700), SMALL, geometry, silent)
     (asked,) = geometry.asked
     assert (asked.target_size, asked.target_total) == (700, None)
+
+
+def test_geometry_that_loses_less_in_pictures_and_leaves_images_more_is_told_apart() -> None:
+    losses: list[float] = []
+
+    class Asked(Geometry):
+        def __call__(
+            self, config: EncodeConfig, listen: Listener, loss: Loss | None = None
+        ) -> NispModel:
+            assert loss
+            large = Geometry(1_500)(config, listen).document
+            huge = Geometry(5_000)(config, listen).document
+            losses.extend(map(loss, (box(), large, octahedron(), huge)))
+            return super().__call__(config, listen)
+
+    how = EncodeConfig(geometry="mesh", target_total=4_000)
+    encode_to_total(asset(), how, NEVER, Asked(600), silent)
+    small, large, other, none_left = losses
+    assert small < large < other < none_left == np.inf
+
+
+def test_too_little_room_for_any_geometry_is_said() -> None:
+    class Large(Geometry):
+        def __call__(
+            self, config: EncodeConfig, listen: Listener, loss: Loss | None = None
+        ) -> NispModel:
+            return super().__call__(replace(config, target_size=5_000), listen, loss)
+
+    how = EncodeConfig(geometry="mesh", target_total=3_000)
+    with pytest.raises(NispError, match=r"bytes are left for geometry: expected at least [\d,]+"):
+        encode_to_total(asset(), how, NEVER, Large(600), silent)
 
 
 def test_progress_never_falls() -> None:
