@@ -24,6 +24,7 @@ export async function answer(file, points, kernel, decode) {
     chart: [...model.charts(asked)],
     uv: [...model.uv(asked)],
     color: [...model.color(asked, await decode(document.images))],
+    bytes: Object.fromEntries(document.bytes),
     gradient: [...gradient(model, asked).gradients],
   };
 }

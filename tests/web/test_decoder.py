@@ -14,6 +14,8 @@ import pytest
 from nispcodec.core.document import Document
 from nispcodec.core.texture import decode_image
 from nispcodec.format import unpack
+from nispcodec.format.constants import NETS
+from nispcodec.format.document import inspect
 from nispcodec.infer.evaluate import gradient
 from nispcodec.model import NispModel
 from tests.web.programs import answers, answers_in_browser
@@ -85,6 +87,17 @@ def test_gradients_are_those_of_the_library(path: Path, found: Any) -> None:
         expected = NispModel(document).normals(points, "normalized")
     off = answer - expected
     assert (np.abs(off) <= 2e-3 * (1 + np.linalg.norm(expected, axis=1)[:, None])).all()
+
+
+@pytest.mark.parametrize("path", FILES, ids=[path.stem for path in FILES])
+def test_bytes_are_split_as_the_library_does(path: Path, found: Any) -> None:
+    sections = inspect(path.read_bytes())
+    expected = {each.code: each.stored_length for each in sections}
+    for each in sections:
+        if each.code == NETS:
+            expected |= {f"{NETS}.{name}": length for name, length in each.parts.items()}
+    # Halves of a byte may be rounded another way.
+    assert found[path.stem]["bytes"] == pytest.approx(expected, abs=1)
 
 
 @pytest.mark.parametrize("ask", [answers, answers_in_browser])

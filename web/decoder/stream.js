@@ -41,10 +41,10 @@ function readModel(reader) {
 }
 
 /**
- * Values of each record of the stream (section 5.4).
+ * Values of each record of the stream (section 5.4), and the bits that they take there.
  * @param {Bytes} reader
  * @param {RunHeader[]} headers
- * @returns {Float64Array[]}
+ * @returns {{values: Float64Array, bits: number}[]}
  */
 export function readStream(reader, headers) {
   const runs = headers.map(({ count, limit, model }) => {
@@ -54,7 +54,8 @@ export function readStream(reader, headers) {
   const tokens = readTokens(reader, runs);
   return headers.map((header, i) => {
     const integers = header.model ? readIntegers(reader, tokens[i], header.limit) : new Float64Array(header.count);
-    return header.kind === null ? integers : integers.map((n) => toFloat(header, n));
+    const values = header.kind === null ? integers : integers.map((n) => toFloat(header, n));
+    return { values, bits: bitsOf(tokens[i], runs[i], header.limit) };
   });
 }
 
@@ -116,6 +117,13 @@ function readTokens(reader, runs) {
   });
   if (!states.every((state) => state === 65536)) throw reader.error("stream", "states of 2^16 at its end", "others");
   return found;
+}
+
+/** What an ideal coder takes for tokens and their open bits. @param {Int32Array} tokens @param {{cells: number, table: number[]}} run @param {number} limit */
+function bitsOf(tokens, { cells, table }, limit) {
+  const { open } = cellsOf(limit);
+  const costs = table.map((frequency, token) => SCALE_BITS - Math.log2(frequency) + (token === cells ? 0 : open));
+  return tokens.reduce((sum, token) => sum + costs[token + cells], 0);
 }
 
 /** Which token has each slot, and where tokens start. @param {number[]} table */

@@ -12,6 +12,7 @@ import { shapesOf } from "./topology.js";
  * @typedef {object} WeightRecord one record of NETS
  * @property {Shape[]} held tensors
  * @property {number} count of values
+ * @property {number} bits that they take in the stream
  * @property {number|null} step
  * @property {Float64Array|null} values; null where they are in the stream
  * @property {import("./stream.js").RunHeader|null} header
@@ -21,8 +22,8 @@ import { shapesOf } from "./topology.js";
  */
 
 /**
- * The weights of all networks (section 5 of the specification), and how many bytes the records of
- * each take.
+ * The weights of all networks (section 5 of the specification), and how many bytes each takes: its
+ * records, and of the stream, which is one for all, what its bits are of all bits.
  * @param {Uint8Array} data
  * @param {Map<string, Spec>} specs in file order
  * @returns {{tensors: Map<string, Tensors>, lengths: Map<string, number>}}
@@ -40,8 +41,17 @@ export function readWeights(data, specs) {
     lengths.set(name, reader.at - start);
     return found;
   });
+  const start = reader.at;
   fillFromStream(reader, records.flat());
   reader.end();
+  const bits = records.map((found) => found.reduce((sum, record) => sum + record.bits, 0));
+  const all = bits.reduce((sum, each) => sum + each, 0) || 1;
+  let [before, end] = [0, 0];
+  [...lengths].forEach(([name, length], i) => {
+    end += ((reader.at - start) * bits[i]) / all;
+    lengths.set(name, length + Math.round(end) - Math.round(before));
+    before = end;
+  });
   const tensors = new Map([...specs.keys()].map((name, i) => [name, toTensors(reader, records[i])]));
   return { tensors, lengths };
 }
@@ -50,7 +60,7 @@ export function readWeights(data, specs) {
 function fillFromStream(reader, records) {
   const coded = records.filter((record) => record.header);
   const found = readStream(reader, coded.map((record) => /** @type {any} */ (record.header)));
-  coded.forEach((record, i) => (record.values = found[i]));
+  coded.forEach((record, i) => Object.assign(record, found[i]));
 }
 
 /** @param {ByteReader} reader @param {Shape[]} shapes @param {number} seed @returns {WeightRecord[]} */
@@ -82,7 +92,7 @@ function readRecord(reader, left, before, seed, place) {
   const step = form === null ? null : readStep(reader, form, before);
   const shifts = form?.startsWith("rows") ? readRowShifts(reader, Number(form[4]), held) : null;
   const count = held.reduce((sum, { rows, columns }) => sum + rows * columns, 0);
-  const record = { held, count, step, values: null, header: null, predicted: null, shifts };
+  const record = { held, count, bits: 0, step, values: null, header: null, predicted: null, shifts };
   if (coding === "delta_init") {
     if (step === null) throw reader.error("step", "a step with delta_init", "none");
     return { ...record, ...readDeltas(reader, record, seed, place) };

@@ -82,16 +82,16 @@ export class ViewerPage {
 
   /** @param {File} file */
   drop(file) {
-    return this.guarded(async () => this.open(new Uint8Array(await file.arrayBuffer()), file.name));
+    return this.guarded(async () => this.open(new Uint8Array(await file.arrayBuffer()), file.name), `${file.name}: `);
   }
 
-  /** Runs it; says what went wrong. @param {() => Promise<void>} work */
-  async guarded(work) {
+  /** Runs it; says what went wrong. @param {() => Promise<void>} work @param {string} [where] */
+  async guarded(work, where = "") {
     try {
       say("");
       await work();
     } catch (why) {
-      say(String(/** @type {Error} */ (why).message ?? why));
+      say(where + String(/** @type {Error} */ (why).message ?? why));
       throw why;
     }
   }

@@ -12,6 +12,9 @@ export const CHANNELS = ["color", "normal", "uv", "chart"];
  * @typedef {import("./camera.js").Camera} Camera
  */
 
+/** How much nearer than its surface a wireframe is drawn, of the depth in clip space: some drivers leave polygonOffset undone. */
+const LINES_NEARER = 1e-3;
+
 /** Draws one asset into a canvas, sample after sample: a picture gets better while nothing moves. */
 export class Renderer {
   /** @param {HTMLCanvasElement} canvas */
@@ -153,8 +156,6 @@ export class Renderer {
   drawMesh(camera, look, width, height, jitter, partsAlone) {
     const { gl } = this;
     const mesh = /** @type {MeshDrawing} */ (this.mesh);
-    gl.enable(gl.POLYGON_OFFSET_FILL);
-    gl.polygonOffset(look.wireframe ? 1 : 0, look.wireframe ? 1 : 0);
     const projection = camera.projection(width, height, jitter);
     const program = this.programs.mesh();
     gl.uniformMatrix4fv(program.at("projection"), false, projection);
@@ -162,7 +163,8 @@ export class Renderer {
     this.light(program, camera, look);
     mesh.draw(program, /** @type {MaterialSet} */ (this.materials), partsAlone);
     if (look.wireframe) {
-      gl.uniformMatrix4fv(this.programs.lines().at("projection"), false, projection);
+      const nearer = projection.map((value, i) => (i % 4 === 2 ? value - LINES_NEARER * projection[i + 1] : value));
+      gl.uniformMatrix4fv(this.programs.lines().at("projection"), false, nearer);
       mesh.drawSides(partsAlone);
     }
   }
