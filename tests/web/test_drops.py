@@ -27,7 +27,7 @@ def test_the_last_sound_file_is_shown_and_nothing_is_left_of_others(tmp_path: Pa
         path.write_bytes(pack(documents()[path.stem]))
     said = run_node(HERE / "drops.mjs", chromium(), page.as_uri(), *paths, timeout=900)
     found = json.loads(said)
-    assert found["bad"]["message"].startswith("bad.nisp: header: signature: expected")
+    assert found["bad"]["message"].startswith("0.nisp: header: signature: expected")
     assert found["bad"]["title"] == "the page's own"
     assert found["first"]["title"] == found["again"]["title"] == "0.nisp"
     assert found["first"]["message"] == found["again"]["message"] == ""
