@@ -117,6 +117,7 @@ RESULTS = (
         (*CORE, "nispcodec/simplify", *FORMAT, *METRICS, *RIVALS),
     ),
     CommittedResult("mixed_forms.json", "benchmarks.studies.mixed_forms", ROUND_TRIP),
+    CommittedResult("uv_carriers.json", "benchmarks.studies.uv_carriers", ROUND_TRIP),
     CommittedResult(
         "shading.json",
         "benchmarks.studies.shading",
