@@ -76,11 +76,20 @@ class Choice:
         forms = self._forms
         self._field_bytes = size
         distance = forms.fitted * probe_error
+        if self._worth > 1 and self._nearest < distance:
+            most = self._worth * size
+            if self._form.estimate(self._nearest, size, most) < most:
+                return False
         fine = probe_error > self._tuning.training.sizing.fine
         few = (forms.surely_smaller_fine if fine else forms.surely_smaller) * size
         self._estimate = self._form.estimate(distance, few, forms.surely_larger * size)
         self.split = self._better_split(size, distance)
         return self.split is None and self._estimate > few
+
+    @property
+    def settled(self) -> bool:
+        """Whether triangles of the target size are as good as exact: networks need no look."""
+        return self._open and bool(self._config.target_size) and self._surely_nearer(0.0)
 
     def _surely_nearer(self, distance: float) -> bool:
         """Whether triangles of the target size need not be set against networks.
@@ -130,7 +139,8 @@ class Choice:
             instead = self._instead(field, size, errors)
             if instead:
                 return instead
-        if not self._open or self._estimate > self._forms.surely_larger * size:
+        surely_larger = max(self._forms.surely_larger, self._worth)
+        if not self._open or self._estimate > surely_larger * size:
             return Chosen(field, errors, self._estimate)
         found = self._rival(size, errors)
         if found is None:
@@ -138,7 +148,7 @@ class Choice:
         meshes = replace(field, field=None, meshes=found.parts)
         other = own_bytes(meshes)
         target = self._config.target_size
-        better = other < size
+        better = other < size * (self._worth if found.errors.distance <= self._nearest else 1.0)
         if target:
             cost = self._forms.error_cost
             better = other <= target and cost(found.errors) < cost(errors)
@@ -189,12 +199,13 @@ class Choice:
             return self._of_target_size
         if self._config.target_error:
             return self._form.within(self._config.target_error, errors.uv)
-        if self._form.estimate(errors.distance, size, size) >= size:
-            return None
-        for distance in (min(errors.distance, self._nearest), errors.distance):
-            found = self._form.best(distance, size)
-            if found.size < size:
-                return found
+        near = min(errors.distance, self._nearest)
+        worth = self._worth if near < errors.distance else 1.0
+        for distance, most in ((near, worth * size), (errors.distance, float(size))):
+            if self._form.estimate(distance, size, most) < most:
+                found = self._form.best(distance, most)
+                if found.size < most and found.errors.distance <= distance:
+                    return found
         return None
 
     def _wanted(self) -> Candidate:
@@ -207,7 +218,7 @@ class Choice:
                 )
             return found
         if not config.target_size:
-            return self._form.best(self._nearest, self._field_bytes or math.inf)
+            return self._form.best(self._nearest, self._worth * self._field_bytes or math.inf)
         least = self._besides + self._of_target_size.size
         if least > config.target_size:
             raise NispError(
@@ -220,6 +231,13 @@ class Choice:
     def _nearest(self) -> float:
         """The mean distance that triangles are to keep within, where bytes allow it."""
         return self._tuning.training.budgets[self._config.preset].mesh
+
+    @property
+    def _worth(self) -> float:
+        """Times the bytes of networks that triangles within that distance may take."""
+        if self._config.target_error or self._config.target_size:
+            return 1.0
+        return self._tuning.training.budgets[self._config.preset].worth
 
     @property
     def _open(self) -> bool:

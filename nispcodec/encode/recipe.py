@@ -72,7 +72,7 @@ def _encoded(
         return Document(frame, materials, textures, held, parts, unmeasured(config))
 
     choice = Choice(form, config, tuning, partial(split, field), document, loss)
-    if config.geometry == "mesh":
+    if config.geometry == "mesh" or choice.settled:
         chosen = choice.triangles()
         info = measured(chosen, analysis, config)
         return _finished(chosen, info, mesh.name, config, tuning, progress)

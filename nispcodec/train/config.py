@@ -284,6 +284,8 @@ class TrainingBudget:
                  is more than `QuantizeConfig` says
     mesh         mean distance (normalized frame) that triangles in place of the networks may be
                  off: they are not made coarser, however small they would be
+    worth        times the networks' bytes that triangles within `mesh` may take, where networks are
+                 further off
     """
 
     steps: int
@@ -294,6 +296,7 @@ class TrainingBudget:
     samples: float = 1.0
     rounding: float = 1.0
     mesh: float = 6e-4
+    worth: float = 1.0
 
 
 @dataclass(frozen=True)
@@ -364,7 +367,7 @@ class TrainConfig:
         default_factory=lambda: {
             "fast": TrainingBudget(9_000, 0.8, 3, 800, 0.7, samples=0.5, rounding=1.25, mesh=1e-3),
             "balanced": TrainingBudget(40_000, 1.0, 9, 2000),
-            "best": TrainingBudget(200_000, 1.2, 15, 4000, mesh=3e-4),
+            "best": TrainingBudget(200_000, 1.2, 15, 4000, mesh=1e-4, worth=3.0),
         }
     )
     batch: int = 1024

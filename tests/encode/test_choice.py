@@ -130,6 +130,23 @@ def test_triangles_in_place_of_a_poor_field_are_as_near_as_the_preset_says() -> 
         assert form.asked == [("best", min(distance, preset), float(SIZE))]
 
 
+def test_the_best_preset_takes_more_bytes_for_triangles_that_are_near() -> None:
+    budget = Tuning().training.budgets["best"]
+    assert budget.worth > 1
+    for size, fitted in ((0.9 * budget.worth * 1000, False), (1.1 * budget.worth * 1000, True)):
+        form = Told(size, best=candidate())
+        asked = choice(form, preset="best")
+        assert asked.wants_field(1000.0, 1e-3) is fitted
+    asked.wants_field(1000.0, 1e-3)
+    asked.triangles()
+    assert form.asked[-1] == ("best", budget.mesh, budget.worth * 1000)
+    larger = SIZE * (1 + budget.worth) / 2
+    for preset, taken in (("best", True), ("balanced", False)):
+        found = SimpleNamespace(parts=(PART,) * 9, errors=EXACT, size=larger)
+        chosen = choice(Told(larger, best=found), preset=preset).after_fit(FIELD, OFF)
+        assert bool(chosen.document.meshes) is taken
+
+
 def test_triangles_are_worth_more_bytes_where_the_field_makes_up_surface() -> None:
     webbed = replace(OFF, made_up=FarPoints(1000, np.zeros((50, 3)), np.zeros(50, np.int32)))
     dear, form = Tuning(forms=FormConfig(worth=1e3)), Told(10.0 * SIZE, best=candidate())
@@ -180,6 +197,8 @@ def test_to_a_size_nothing_is_fitted_where_triangles_are_surely_nearer(
     near = candidate(Errors(distance, distance, 1e-4, 1e-4))
     asked = choice(Told(of_size=near, fewest=near), target_size=size)
     assert asked.wants_field(size, 1e-3) is fitted
+    assert asked.settled is not fitted
+    assert not choice(Told(of_size=near, fewest=near), geometry="field", target_size=size).settled
 
 
 def test_triangles_over_the_size_are_not_taken_however_near() -> None:
