@@ -9,7 +9,7 @@ import io
 import struct
 import warnings
 import zlib
-from collections.abc import Collection, Iterable, Sequence
+from collections.abc import Callable, Collection, Iterable, Sequence
 from dataclasses import replace
 from itertools import count
 from pathlib import PurePath
@@ -195,13 +195,14 @@ def _is_opaque(pixels: Uint8Array) -> bool:
 
 
 def sample_texture(
-    image: Float32Array,
+    image: Float32Array | Uint8Array,
     uv: FloatArray,
     wrap: tuple[str, str] = ("repeat", "repeat"),
     filter: str = "linear",
 ) -> Float32Array:
     """Colors (n, c) float32 of an (h, w, c) image at (n, 2) UVs, origin bottom-left.
 
+    Of an image of bytes they are 255ths.
     Texel centers lie at half-integers, as in OpenGL and glTF; `wrap` and `filter` are those of
     `TextureMap`. A coordinate that is NaN or infinite counts as 0. Never filters between mip
     levels.
@@ -209,24 +210,28 @@ def sample_texture(
     height, width = image.shape[:2]
     # Texels by one index each: numpy takes thrice as long for a row and a column.
     texels = image.reshape(height * width, -1)
+
+    def at(places: IndexArray) -> Float32Array:
+        found: Any = texels.take(places, axis=0)
+        return found / np.float32(255) if found.dtype == np.uint8 else found
+
     u, v = np.nan_to_num(np.asarray(uv, dtype=np.float64), posinf=0.0, neginf=0.0).T
     x, y = u * width, (1.0 - v) * height
     if filter == "nearest":
         row, column = _texel(np.floor(y), height, wrap[1]), _texel(np.floor(x), width, wrap[0])
-        return texels.take(row * width + column, axis=0)
+        return at(row * width + column)
     left, top = np.floor(x - 0.5), np.floor(y - 0.5)
     columns = [_texel(left + step, width, wrap[0]) for step in (0, 1)]
     rows = [_texel(top + step, height, wrap[1]) * width for step in (0, 1)]
     right = (x - 0.5 - left).astype(np.float32)[:, None]
     low = (y - 0.5 - top).astype(np.float32)[:, None]
-    above, below = (
-        _mix(texels.take(row + columns[0], axis=0), texels.take(row + columns[1], axis=0), right)
-        for row in rows
-    )
+    above, below = (_mix(at(row + columns[0]), at(row + columns[1]), right) for row in rows)
     return _mix(above, below, low)
 
 
-def base_color(material: Material, image: Float32Array | None, uv: FloatArray) -> Float32Array:
+def base_color(
+    material: Material, image: Float32Array | Uint8Array | None, uv: FloatArray
+) -> Float32Array:
     """Base color (n, 4) float32 at (n, 2) UVs: sRGB-encoded RGB and linear alpha, in [0, 1].
 
     `image` holds the pixels of the material's base-color map, None when it has none. The factor
@@ -255,13 +260,28 @@ def base_colors(
     Where `has_uv` (n,) is False the material shows its factor alone. Raises MeshError for a texture
     that does not decode.
     """
+
+    def decoded(texture: int) -> Float32Array:
+        return decode_image(textures[texture])
+
+    return base_colors_of(materials, decoded, owners, has_uv, uv)
+
+
+def base_colors_of(
+    materials: Sequence[Material],
+    image_of: Callable[[int], Float32Array | Uint8Array],
+    owners: IntArray,
+    has_uv: BoolArray,
+    uv: FloatArray,
+) -> Float32Array:
+    """As `base_colors`, of images that `image_of` has for the numbers of textures."""
     colors = np.empty((len(uv), 4), np.float32)
     for number in np.unique(owners).tolist():
         used = materials[number].maps.get("base_color")
         shown = has_uv & (used is not None)
         for image_shown in np.unique(shown[owners == number]).tolist():
             chosen = (owners == number) & (shown == image_shown)
-            image = decode_image(textures[used.texture]) if used and image_shown else None
+            image = image_of(used.texture) if used and image_shown else None
             colors[chosen] = base_color(materials[number], image, uv[chosen])
     return colors
 

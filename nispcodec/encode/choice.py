@@ -126,8 +126,9 @@ class Choice:
         if split is None:
             return None
         networks, error = split.field.foreseen
-        mixed = forms.cost(networks + found.other_size, forms.fitted * error)
-        pure = min(forms.cost(size, distance), forms.cost(triangles, found.distance))
+        cost = forms.foreseen_cost
+        mixed = cost(networks + found.other_size, forms.fitted * error)
+        pure = min(cost(size, distance), cost(triangles, found.distance))
         return split if mixed < pure + math.log(forms.worth_mixing) else None
 
     def after_fit(self, field: Document, errors: Errors) -> Chosen:
@@ -147,12 +148,20 @@ class Choice:
             return Chosen(field, errors)
         meshes = replace(field, field=None, meshes=found.parts)
         other = own_bytes(meshes)
-        target = self._config.target_size
-        better = other < size * (self._worth if found.errors.distance <= self._nearest else 1.0)
-        if target:
-            cost = self._forms.error_cost
-            better = other <= target and cost(found.errors) < cost(errors)
+        better = self._is_better((other, found.errors), (size, errors))
         return Chosen(meshes, found.errors, size) if better else Chosen(field, errors, other)
+
+    def _is_better(self, triangles: tuple[int, Errors], networks: tuple[int, Errors]) -> bool:
+        """Whether triangles of so many bytes and such errors are better than networks."""
+        config, cost = self._config, self._forms.cost
+        if config.target_error:
+            return triangles[0] < networks[0]
+        if config.target_size:
+            fits, worse = triangles[0] <= config.target_size, self._forms.error_cost
+            return fits and worse(triangles[1]) < worse(networks[1])
+        if self._worth > 1 and triangles[1].distance <= self._nearest < networks[1].distance:
+            return triangles[0] < self._worth * networks[0]
+        return cost(*triangles) < cost(*networks)
 
     def _of_less_loss(self, field: Document, errors: Errors, loss: Loss) -> Chosen:
         """The fitted document, or the triangles of the least loss."""
@@ -171,7 +180,7 @@ class Choice:
         The more it makes up, the more bytes.
         """
         made_up, target = errors.made_up.share, self._config.target_size
-        most = target or size * min(self._forms.worth, made_up / self._forms.notable_far)
+        most = target or size * min(self._forms.most_worth, made_up / self._forms.notable_far)
         if self._config.target_error:
             found = self._form.within(self._config.target_error, errors.uv)
         elif target:
@@ -194,19 +203,29 @@ class Choice:
         return Chosen(self._document(None, found.parts), found.errors, self._field_bytes)
 
     def _rival(self, size: int, errors: Errors) -> Candidate | None:
-        """Triangles to set against a fitted field, if there are some in fewer bytes or as asked."""
+        """Triangles to set against a fitted field, if some may be better, or as asked."""
         if self._config.target_size:
             return self._of_target_size
         if self._config.target_error:
             return self._form.within(self._config.target_error, errors.uv)
-        near = min(errors.distance, self._nearest)
-        worth = self._worth if near < errors.distance else 1.0
-        for distance, most in ((near, worth * size), (errors.distance, float(size))):
-            if self._form.estimate(distance, size, most) < most:
-                found = self._form.best(distance, most)
-                if found.size < most and found.errors.distance <= distance:
-                    return found
-        return None
+        return self._near_rival(size, errors) or self._like_rival(size, errors)
+
+    def _near_rival(self, size: int, errors: Errors) -> Candidate | None:
+        """Triangles nearer than the networks, where the preset has them take more bytes."""
+        near, most = self._nearest, self._worth * size
+        if self._worth <= 1 or near >= errors.distance:
+            return None
+        if self._form.estimate(near, size, most) >= most:
+            return None
+        found = self._form.best(near, most)
+        return found if found.size < most and found.errors.distance <= near else None
+
+    def _like_rival(self, size: int, errors: Errors) -> Candidate | None:
+        """Triangles about as near as the networks, where these are large or ugly enough."""
+        most = size * self._forms.worth(errors)
+        if self._form.estimate(errors.distance, size, most) >= most:
+            return None
+        return self._form.about(errors.distance)
 
     def _wanted(self) -> Candidate:
         config = self._config

@@ -148,8 +148,12 @@ class FormConfig:
     distance_weight  of the logarithm of the distance against that of the bytes: halving it is worth
                      a third more bytes
     uv_weight        the same for UV errors
+    color_weight     the same for errors of base colors: halving them is worth 15 % more bytes
+    negligible_color errors of base colors below this, over their range, are as good as none: 46 dB
+    far_weight       the same for surface that is made up or lost: ten times what is warned of is
+                     worth an eighth more bytes
     notable_far      share of the area that a form may make up, or lose, before its owner is warned
-    worth            times a field's bytes that triangles may take at most where it makes up surface
+    most_worth       times a field's bytes that triangles may take at most where it makes up surface
     dense            source faces for each that simplification leaves from which on a body is dense
                      and smooth: networks suit it
     notable_body     share of the triangles' bytes from which on a body may be worth networks
@@ -182,8 +186,11 @@ class FormConfig:
     negligible_uv: float = 5e-4
     distance_weight: float = 0.4
     uv_weight: float = 0.15
+    color_weight: float = 0.2
+    negligible_color: float = 5e-3
+    far_weight: float = 0.05
     notable_far: float = 5e-4
-    worth: float = 3.0
+    most_worth: float = 3.0
     dense: float = 4.0
     notable_body: float = 0.03
     least_networks: float = 3000.0
@@ -202,8 +209,12 @@ class FormConfig:
         """Whether so little is made up and lost that nobody need be warned."""
         return max(errors.made_up.share, errors.lost.share) <= self.notable_far
 
-    def cost(self, size: float, distance: float) -> float:
-        """The logarithm of bytes, and that of a mean distance as weighted against it."""
+    def cost(self, size: float, errors: Errors) -> float:
+        """The logarithm of bytes, and those of errors as weighted against it."""
+        return self.foreseen_cost(size, errors.distance) + self._blemishes(errors)
+
+    def foreseen_cost(self, size: float, distance: float) -> float:
+        """The same where of the errors only a mean distance is known."""
         return math.log(size) + self.distance_weight * math.log(max(distance, self.negligible))
 
     def error_cost(self, errors: Errors) -> float:
@@ -216,6 +227,16 @@ class FormConfig:
         near = max(errors.distance - errors.far_part, self.negligible)
         distance = self.distance_weight * math.log(near)
         return distance + self.uv_weight * sum(uvs) / len(uvs)
+
+    def worth(self, errors: Errors) -> float:
+        """Times the bytes of a form with these errors that one as near without others may take."""
+        return math.exp(self._blemishes(errors))
+
+    def _blemishes(self, errors: Errors) -> float:
+        """What wrong colors and surface made up or lost add to the cost; 0 for negligible ones."""
+        wrong = max(errors.color / self.negligible_color, 1.0)
+        far = max(errors.made_up.share, errors.lost.share) / self.notable_far
+        return self.color_weight * math.log(wrong) + self.far_weight * math.log1p(far)
 
 
 @dataclass(frozen=True)

@@ -5,11 +5,11 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator
 from dataclasses import replace
-from functools import cached_property
+from functools import cached_property, partial
 
 from nispcodec.core.arrays import BoolArray
 from nispcodec.core.document import Document, Field
-from nispcodec.core.mesh_part import MeshPart
+from nispcodec.core.mesh_part import MAX_GRID_BITS, MeshPart
 from nispcodec.core.progress import Listener, Progress
 from nispcodec.encode.bodies import Sorted, sort_bodies
 from nispcodec.encode.config import FormConfig
@@ -19,6 +19,7 @@ from nispcodec.extract.meshing import default_resolution, expected_faces, textur
 from nispcodec.format import mesh
 from nispcodec.geometry.analysis import Analysis
 from nispcodec.geometry.shown import Shown, shown
+from nispcodec.metrics.paint import Paint
 from nispcodec.simplify.closest import Tree
 from nispcodec.simplify.descent import least_loss
 from nispcodec.simplify.errors import Errors, Original
@@ -48,7 +49,12 @@ class MeshForm:
     def simplifier(self) -> Simplifier:
         """The maker of candidates, from the faces that can be seen."""
         triangles, kept = self._triangles
-        return Simplifier.of_kept(triangles, kept, coded_bytes, self._config.ladder, self._seed)
+        config, seed = self._config.ladder, self._seed
+        return Simplifier.of_kept(triangles, kept, coded_bytes, config, seed, self._paint)
+
+    @cached_property
+    def _paint(self) -> Paint:
+        return Paint.of(self._analysis.mesh)
 
     @cached_property
     def _shown(self) -> Shown:
@@ -66,7 +72,9 @@ class MeshForm:
         """Hidden faces are in it, too: networks and triangles side by side hide nothing."""
         triangles, kept = self._triangles
         samples = self._config.ladder.samples
-        return Original.of(triangles, Tree(triangles.corners), samples, self._seed, kept)
+        return Original.of(
+            triangles, Tree(triangles.corners), samples, self._seed, kept, None, self._paint
+        )
 
     @cached_property
     def _rungs(self) -> Rungs:
@@ -115,7 +123,31 @@ class MeshForm:
         sound = [each for each in found if self._config.is_sound(each.errors)] or found
         near = [each for each in sound if each.errors.distance <= most_distance] or sound
         within = [each for each in near if each.size <= most_bytes] or near
-        return min(within, key=self._cost)
+        best = min(within, key=partial(_cost, config=self._config))
+        return self._refined(best, max(most_distance, best.errors.distance), most_bytes)
+
+    def about(self, distance: float) -> Candidate:
+        """A candidate whose mean distance is about this."""
+        self._progress(Progress(stage="triangles"))
+        found = self._rungs.about(distance)
+        return self._refined(found, max(distance, found.errors.distance), math.inf)
+
+    def _refined(self, found: Candidate, most_distance: float, most_bytes: float) -> Candidate:
+        """The same faces with coarser positions and finer UVs, as long as that costs less."""
+        # Bits are cheap: distances down to where rounding need not go count here.
+        config = replace(self._config, negligible=self._config.ladder.tolerance)
+        for fewer, more in ((1, 0), (0, 1)):
+            best, bits, uv_bits = found, found.bits - fewer, found.uv_bits + more
+            while min(bits, MAX_GRID_BITS - uv_bits) >= 1:
+                other = self.simplifier.candidate(found.asked, bits, uv_bits)
+                large = other.size > max(most_bytes, best.size)
+                if large or other.errors.distance > most_distance:
+                    break
+                if _cost(other, config) >= _cost(best, config):
+                    break
+                best, bits, uv_bits = other, bits - fewer, uv_bits + more
+            found = best
+        return found
 
     def _whole(self, most_bytes: float) -> Iterator[Candidate]:
         """Every face, rounded to several errors, where that may be had for so many bytes."""
@@ -146,7 +178,8 @@ class MeshForm:
         """The candidate of the fewest faces that are made."""
         return fewest(self.simplifier)
 
-    def _cost(self, candidate: Candidate) -> float:
-        config, errors = self._config, candidate.errors
-        uv = config.uv_weight * math.log(max(errors.uv, config.negligible_uv))
-        return config.cost(candidate.size, errors.distance) + uv
+
+def _cost(candidate: Candidate, config: FormConfig) -> float:
+    errors = candidate.errors
+    uv = config.uv_weight * math.log(max(errors.uv, config.negligible_uv))
+    return config.cost(candidate.size, errors) + uv

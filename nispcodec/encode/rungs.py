@@ -39,6 +39,15 @@ class Rungs:
         """The candidate of the most faces of those that were made."""
         return self._made[max(self._made)]
 
+    def about(self, distance: float) -> Candidate:
+        """The candidate of as many faces as should have a mean distance, by those made before."""
+        far, near = _sides(self._made, distance)
+        if far and near:
+            low, high = max(far), min(near)
+            share = _share(self._made[low], self._made[high], distance)
+            return self.at(round(low * (high / low) ** share))
+        return self.at(max(far) if far else min(near))
+
     def rising(self, most_bytes: float, distance: float | None = None) -> Iterator[Candidate]:
         """More and more faces, up to the first candidate of so many bytes.
 
@@ -85,9 +94,7 @@ class Rungs:
             beyond = last + (max(1, round(steps)) if far else min(-1, round(steps)))
             return min(max(beyond, 0), len(self._faces) - 1)
         low, high = max(far), min(near)
-        share = _logarithm(made[low], distance) / (
-            _logarithm(made[low], distance) - _logarithm(made[high], distance)
-        )
+        share = _share(made[low], made[high], distance)
         return min(max(low + 1, round(low + share * (high - low))), max(high - 1, low))
 
     def _law(self, made: dict[int, Candidate], distance: float) -> float:
@@ -114,6 +121,12 @@ def _sides(made: dict[int, Candidate], distance: float) -> tuple[list[int], list
     """The rungs that are farther off than a distance, and those that are as near."""
     far = [each for each, found in made.items() if found.errors.distance > distance]
     return far, [each for each in made if each not in far]
+
+
+def _share(far: Candidate, near: Candidate, distance: float) -> float:
+    """How much of the way from one candidate to the other lies before a distance."""
+    before, after = _logarithm(far, distance), -_logarithm(near, distance)
+    return before / max(before + after, sys.float_info.epsilon)
 
 
 def _logarithm(found: Candidate, distance: float) -> float:

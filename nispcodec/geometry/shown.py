@@ -8,7 +8,7 @@ import numpy as np
 
 from nispcodec.core.arrays import BoolArray, Float64Array, Int64Array
 from nispcodec.core.asset import TexturedMesh
-from nispcodec.core.connectivity import connected_faces
+from nispcodec.core.connectivity import connected_faces, edge_ids
 from nispcodec.geometry.analysis import Analysis
 from nispcodec.geometry.config import SolidConfig
 from nispcodec.geometry.rays import leaves, ways_beside
@@ -22,7 +22,8 @@ class Shown:
 
     mesh   the asset's, faces wound the wrong way within their body turned
     faces  (m,) bool: what is not hidden, or is inside another body and seen for all that, through
-           an opening of it: no signed distance can hold those, but triangles can
+           an opening of it: no signed distance can hold those, but triangles can; and hidden faces
+           beside two others, as jagged borders take more bytes than they do
     sheet  (m,) bool: open surfaces, which have no inside
     """
 
@@ -49,6 +50,7 @@ def shown(analysis: Analysis) -> Shown:
     faces = _any(solid.parents, count)
     hidden = np.flatnonzero(~faces)
     faces[hidden] = _seen(analysis.frame.to_normalized(mesh.corners), hidden, config)
+    faces |= _beside_two(welded(flipped).positions, faces)
     return Shown(flipped, faces, _by_body(flipped, faces, sheet & ~walls))
 
 
@@ -70,6 +72,14 @@ def _seen(corners: Float64Array, faces: Int64Array, config: SolidConfig) -> Bool
     start = np.einsum("nk,nkd->nd", weights, asked) + config.sight_offset * facing
     free = leaves(corners, start, ways_beside(facing, random))
     return np.asarray(free.reshape(len(faces), rays).any(axis=1))
+
+
+def _beside_two(corners: Int64Array, chosen: BoolArray) -> BoolArray:
+    """(m,): which faces, of corners (m, 3), have chosen ones (m,) over two sides or three."""
+    sides = edge_ids(corners)[0].reshape(-1, 3)
+    among = np.zeros(int(sides.max()) + 1, np.bool_)
+    among[sides[chosen]] = True
+    return np.asarray(among[sides].sum(axis=1) >= 2)
 
 
 def _by_body(mesh: TexturedMesh, faces: BoolArray, sheet: BoolArray) -> BoolArray:

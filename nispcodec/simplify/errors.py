@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -12,6 +13,7 @@ from nispcodec.core.errors import MeshError
 from nispcodec.core.mesh_part import MeshPart
 from nispcodec.metrics.far_points import FAR, FarPoints
 from nispcodec.metrics.geometry import Matches
+from nispcodec.metrics.paint import Paint
 from nispcodec.metrics.surface import Surface, SurfacePoints
 from nispcodec.metrics.uv import uv_errors
 from nispcodec.simplify.closest import Tree
@@ -23,6 +25,8 @@ class Errors:
     """The larger of both directions; distances in the normalized frame, UVs in the asset's.
 
     distance, uv  means; distance_p99, uv_median; 0 for UVs where the original has none
+    color         root of the mean square of base colors, sRGB-encoded, of both directions together;
+                  0 where none are known
     made_up       points of the part that are far from the original
     lost          points of the original, of counted faces, that are far from the part
     far_part      what far points add to the distance
@@ -32,6 +36,7 @@ class Errors:
     distance_p99: float
     uv: float
     uv_median: float
+    color: float = 0.0
     made_up: FarPoints = field(default_factory=FarPoints, compare=False)
     lost: FarPoints = field(default_factory=FarPoints, compare=False)
     far_part: float = 0.0
@@ -47,6 +52,7 @@ class Original:
 
     tree   for closest points
     whole  the same of all that is there, hidden faces too: nothing that is near it is made up
+    paint  its base colors; None: they do not count
     """
 
     surface: Surface
@@ -54,6 +60,7 @@ class Original:
     tree: Tree
     whole: Tree
     seed: int
+    paint: Paint | None = None
 
     @staticmethod
     def of(
@@ -63,6 +70,7 @@ class Original:
         seed: int,
         counted: BoolArray | None = None,
         whole: Tree | None = None,
+        paint: Paint | None = None,
     ) -> Original:
         """`samples` points on the original; of those only the ones on `counted` faces (m,) bool.
 
@@ -73,7 +81,7 @@ class Original:
         points = surface.sample(samples, np.random.default_rng([seed, 0]))
         if counted is not None and counted[points.faces].any():
             points = points[counted[points.faces]]
-        return Original(surface, points, tree, whole or tree, seed)
+        return Original(surface, points, tree, whole or tree, seed, paint)
 
     def errors(self, decoded: TexturedMesh) -> Errors:
         """Errors of a mesh whose positions are in the normalized frame.
@@ -98,10 +106,17 @@ class Original:
             distance_p99=max(float(np.percentile(each.distances, 99)) for each in directions),
             uv=max((float(each.mean()) for each in seen), default=0.0),
             uv_median=max((float(np.median(each)) for each in seen), default=0.0),
+            color=self._color(other, directions),
             made_up=self._nowhere(FarPoints.of(decoded, points, directions[1].distances)),
             lost=FarPoints.of(self.surface.mesh, self.points, directions[0].distances),
             far_part=distance - near,
         )
+
+    def _color(self, other: Surface, directions: Sequence[Matches]) -> float:
+        if self.paint is None:
+            return 0.0
+        misses = [self.paint.misses(self.surface, other, each) for each in directions]
+        return float(np.sqrt(np.concatenate(misses).mean()))
 
     def _nowhere(self, far: FarPoints) -> FarPoints:
         """Those that are far from hidden faces too."""

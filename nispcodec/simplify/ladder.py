@@ -10,6 +10,7 @@ import numpy as np
 
 from nispcodec.core.arrays import BoolArray
 from nispcodec.core.mesh_part import MAX_GRID_BITS, MeshPart
+from nispcodec.metrics.paint import Paint
 from nispcodec.simplify.closest import Tree
 from nispcodec.simplify.collapse import collapsed
 from nispcodec.simplify.config import LadderConfig
@@ -29,8 +30,12 @@ Coded = Callable[[tuple[MeshPart, ...]], int]
 
 @dataclass(frozen=True)
 class Candidate:
-    """Parts, what they cost and how far they are from the original."""
+    """Parts, what they cost and how far they are from the original.
 
+    asked  about how many faces were to be left of the source's
+    """
+
+    asked: int
     parts: tuple[MeshPart, ...]
     bits: int
     uv_bits: int
@@ -72,26 +77,33 @@ class Simplifier:
         config: LadderConfig = LadderConfig(),
         seed: int = 0,
         kept: BoolArray | None = None,
+        paint: Paint | None = None,
     ) -> Simplifier:
         """kept: (m,) bool, the faces that candidates hold and that are looked for; None: all.
 
         The others, such as those hidden in bodies, may be found where they are, but are not missed.
+        paint: the colors of the materials, where these count.
         Raises MeshError where no face has an area.
         """
         copies = copies_of(triangles, config.copies, kept)
-        return Simplifier._of(copies, triangles, kept, None, coded, config, seed)
+        return Simplifier._of(copies, triangles, kept, None, coded, config, seed, paint)
 
     @staticmethod
     def of_kept(
-        triangles: Triangles, kept: BoolArray, coded: Coded, config: LadderConfig, seed: int
+        triangles: Triangles,
+        kept: BoolArray,
+        coded: Coded,
+        config: LadderConfig,
+        seed: int,
+        paint: Paint | None = None,
     ) -> Simplifier:
         """As `of`, but others than the kept faces are found only where copies have them."""
         copies = copies_of(triangles, config.copies, kept)
         if copies.covered.all():
-            return Simplifier._of(copies, triangles, kept, None, coded, config, seed)
+            return Simplifier._of(copies, triangles, kept, None, coded, config, seed, paint)
         there, kept = triangles.only(copies.covered), kept[copies.covered]
         whole = Tree(triangles.corners)
-        return Simplifier._of(copies, there, kept, whole, coded, config, seed)
+        return Simplifier._of(copies, there, kept, whole, coded, config, seed, paint)
 
     @staticmethod
     def _of(
@@ -102,11 +114,12 @@ class Simplifier:
         coded: Coded,
         config: LadderConfig,
         seed: int,
+        paint: Paint | None,
     ) -> Simplifier:
         source = Source(copies.triangles)
         same = len(source.triangles) == len(triangles)
         tree = source.tree if same else Tree(triangles.corners)
-        original = Original.of(triangles, tree, config.samples, seed, kept, whole)
+        original = Original.of(triangles, tree, config.samples, seed, kept, whole, paint)
         return Simplifier(copies, source, original, coded, config, seed)
 
     def fitted(self, faces: int) -> Triangles:
@@ -130,7 +143,7 @@ class Simplifier:
             triangles = replace(triangles, uvs=uvs)
         parts = self.copies.parts(triangles, bits, uv_bits)
         errors = self.original.errors(scene([(mesh_of(part), part.placements) for part in parts]))
-        return Candidate(parts, bits, uv_bits, errors, self.coded)
+        return Candidate(faces, parts, bits, uv_bits, errors, self.coded)
 
     def balanced(self, faces: int) -> Candidate:
         """About so many faces, with bits whose rounding suits the error that is there before."""

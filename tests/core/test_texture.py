@@ -89,6 +89,16 @@ def test_wrap(wrap: str, u: float, value: float) -> None:
     assert float(turned[0, 0]) == pytest.approx(value)
 
 
+@pytest.mark.parametrize("filter", ["linear", "nearest"])
+def test_bytes_are_255ths(filter: str) -> None:
+    random = np.random.default_rng(0)
+    image, uvs = random.integers(0, 256, (5, 7, 4), np.uint8), random.random((50, 2))
+    given = (image / np.float32(255)).astype(np.float32)
+    repeat = ("repeat", "repeat")
+    expected = sample_texture(given, uvs, repeat, filter)
+    np.testing.assert_array_equal(sample_texture(image, uvs, repeat, filter), expected)
+
+
 def test_nearest_takes_the_texel_under_the_point() -> None:
     assert sampled(0.49, 0.49, filter="nearest") == 0
     assert sampled(0.51, 0.49, filter="nearest") == 1

@@ -116,18 +116,29 @@ def test_who_asks_for_networks_gets_them(options: dict[str, Any]) -> None:
 
 
 def test_triangles_that_are_smaller_and_no_worse_are_taken() -> None:
-    chosen = choice(Told(10.0, best=candidate())).after_fit(FIELD, OFF)
+    chosen = choice(Told(10.0, about=candidate())).after_fit(FIELD, OFF)
     assert chosen.document.field is None
     assert chosen.document.meshes == (PART,)
     assert (chosen.errors, chosen.other_bytes) == (EXACT, SIZE)
 
 
-def test_triangles_in_place_of_a_poor_field_are_as_near_as_the_preset_says() -> None:
-    preset = Tuning().training.budgets["balanced"].mesh
-    for distance in (2 * preset, preset / 2):
-        form = Told(10.0, best=candidate())
-        choice(form).after_fit(FIELD, replace(OFF, distance=distance, uv=0.0))
-        assert form.asked == [("best", min(distance, preset), float(SIZE))]
+def test_triangles_are_set_against_a_field_at_its_own_distance() -> None:
+    form = Told(10.0, about=candidate())
+    choice(form).after_fit(FIELD, OFF)
+    assert form.asked == [("about", OFF.distance, 0.0)]
+
+
+LOST = FarPoints(1000, np.zeros((50, 3)), np.zeros(50, np.int32))
+
+
+@pytest.mark.parametrize("errors", [replace(OFF, color=0.05), replace(OFF, lost=LOST)])
+def test_wrong_colors_and_lost_surface_of_networks_are_worth_bytes(errors: Errors) -> None:
+    same = replace(EXACT, distance=OFF.distance)
+    larger = SimpleNamespace(parts=(PART,) * 38, errors=same, size=1.1 * SIZE)
+    assert 1 < own_bytes(as_mesh(None, larger.parts)) / SIZE < TUNING.forms.worth(errors)
+    chosen = choice(Told(SIZE, about=larger)).after_fit(FIELD, errors)
+    assert len(chosen.document.meshes) == 38
+    assert choice(Told(SIZE, about=larger)).after_fit(FIELD, OFF).document is FIELD
 
 
 def test_the_best_preset_takes_more_bytes_for_triangles_that_are_near() -> None:
@@ -149,11 +160,11 @@ def test_the_best_preset_takes_more_bytes_for_triangles_that_are_near() -> None:
 
 def test_triangles_are_worth_more_bytes_where_the_field_makes_up_surface() -> None:
     webbed = replace(OFF, made_up=FarPoints(1000, np.zeros((50, 3)), np.zeros(50, np.int32)))
-    dear, form = Tuning(forms=FormConfig(worth=1e3)), Told(10.0 * SIZE, best=candidate())
+    dear, form = Tuning(forms=FormConfig(most_worth=1e3)), Told(10.0 * SIZE, best=candidate())
     taken = choice(form, tuning=dear).after_fit(FIELD, webbed)
     assert taken.document.meshes == (PART,)
     assert (taken.other_bytes, taken.other_made_up) == (SIZE, 0.05)
-    cheap, form = Tuning(forms=FormConfig(worth=1e-3)), Told(10.0 * SIZE, best=candidate())
+    cheap, form = Tuning(forms=FormConfig(most_worth=1e-3)), Told(10.0 * SIZE, best=candidate())
     kept = choice(form, tuning=cheap).after_fit(FIELD, webbed)
     assert (kept.document, kept.other_made_up) == (FIELD, 0.0)
     no_better = Told(10.0 * SIZE, best=candidate(webbed))
@@ -162,7 +173,7 @@ def test_triangles_are_worth_more_bytes_where_the_field_makes_up_surface() -> No
 
 
 def test_larger_triangles_are_not() -> None:
-    chosen = choice(Told(10.0 * SIZE, best=candidate())).after_fit(FIELD, OFF)
+    chosen = choice(Told(10.0 * SIZE, about=candidate())).after_fit(FIELD, OFF)
     assert (chosen.document, chosen.errors) == (FIELD, OFF)
 
 

@@ -39,6 +39,15 @@ def test_the_estimate_is_near_what_is_found(ball: MeshForm) -> None:
     assert 0.6 < ball.estimate(4e-3, 300.0, 1e9) / found.size < 1.6
 
 
+def test_what_is_about_as_near_has_coarser_positions_or_finer_uvs(ball: MeshForm) -> None:
+    ball.estimate(4e-3, 300.0, 1e9)
+    found = ball.about(4e-3)
+    ruled = ball.simplifier.balanced(found.asked)
+    assert 2e-3 < found.errors.distance <= max(4e-3, ruled.errors.distance)
+    assert found.bits <= ruled.bits
+    assert found.uv_bits >= ruled.uv_bits
+
+
 def test_few_large_faces_are_kept_as_they_are(box: MeshForm) -> None:
     best = box.best(1e-3, math.inf)
     assert best.faces == 12

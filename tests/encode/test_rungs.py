@@ -49,6 +49,12 @@ def test_between_two_rungs_the_bytes_are_those_of_the_power_law(rungs: Rungs, fa
     assert math.isclose(found, 3 * faces, rel_tol=0.03)
 
 
+@pytest.mark.parametrize("faces", [200, 900, 5000, 15_000])
+def test_as_many_faces_as_are_expected_to_be_that_near(rungs: Rungs, faces: int) -> None:
+    rungs.bytes_at(1 / faces, 1000.0, 60_000.0)
+    assert math.isclose(rungs.about(1 / faces).faces, faces, rel_tol=0.01)
+
+
 def test_what_is_clearly_too_large_takes_one_candidate(law: PowerLaw, rungs: Rungs) -> None:
     assert rungs.bytes_at(1e-6, 1000.0, 2000.0) > 2000
     assert len(law.asked) == 1

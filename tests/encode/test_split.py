@@ -58,7 +58,7 @@ def test_bodies_that_others_close_are_not_torn_from_them() -> None:
 def test_both_forms_are_one_file() -> None:
     mesh = mixed()
     # So short a fit foresees nothing.
-    forms = replace(SHORT.forms, least_networks=1.0, worth_mixing=1e9, worth=0.0)
+    forms = replace(SHORT.forms, least_networks=1.0, worth_mixing=1e9, most_worth=0.0)
     tuning = replace(SHORT, forms=replace(forms, surely_larger=1e-9))
     model = nispcodec.encode(mesh, EncodeConfig(), tuning=tuning)
     again = nispcodec.encode(mesh, EncodeConfig(), tuning=tuning)

@@ -45,3 +45,11 @@ def test_what_is_seen_through_an_opening_is_shown() -> None:
     inner = cube((-0.25, -0.25, -0.9), 0.5)
     seen = found(np.concatenate([open_box, inner]))
     assert seen.faces[len(open_box) :].sum() >= 10
+
+
+def test_a_hidden_face_between_two_that_are_seen_is_kept() -> None:
+    sunk = cube((-0.25, -0.25, 0.8), 0.5)
+    seen = found(np.concatenate([BOX, sunk]))
+    deepest = sunk[:, :, 2].max(axis=1) < 0.9
+    assert deepest.sum() == 2
+    assert seen.faces.all()
