@@ -22,25 +22,52 @@ async function firstPicture() {
   return performance.now() / 1000;
 }
 
-/** In the page: calls of the SDF network a ray, with the grid of free space and without; null without a field. */
+/** In the page: calls of the SDF network a ray, by the viewer and by a plain sphere tracer; null without a field. */
 function callsOfRays(across) {
   const { renderer, camera } = globalThis.nispViewer.pane;
   const { gl, field } = renderer;
   if (!field) return null;
-  const mean = () => {
+  return { viewer: byViewer(), plain: byPlainTracer() };
+
+  function byViewer() {
     renderer.restart();
     renderer.traceField(camera, across, across, [0, 0], across);
     gl.readBuffer(gl.COLOR_ATTACHMENT1);
     const normals = new Float32Array(4 * across * across);
     gl.readPixels(0, 0, across, across, gl.RGBA, gl.FLOAT, normals);
     return normals.reduce((sum, value, i) => sum + (i % 4 === 3 ? value : 0), 0) / across ** 2;
-  };
-  const grid = mean();
-  const side = field.occupancy.size;
-  gl.bindTexture(gl.TEXTURE_3D, field.grid);
-  // Nowhere free: a sphere tracer as it is.
-  gl.texSubImage3D(gl.TEXTURE_3D, 0, 0, 0, 0, side, side, side, gl.RED_INTEGER, gl.UNSIGNED_BYTE, new Uint8Array(side ** 3));
-  return { grid, plain: mean() };
+  }
+
+  /** From where a ray enters the ball, by the field over its steepest slope, to the surface or out of the ball. */
+  function byPlainTracer() {
+    const network = globalThis.nispViewer.model.field.sdfNetwork;
+    const [eye, directions] = [camera.eye(), raysOf(camera)];
+    let rays = directions.map((direction) => ({ direction, ...chord(eye, direction) })).filter(({ at, end }) => at < end);
+    let calls = 0;
+    for (let step = 0; step < 400 && rays.length; step++) {
+      const points = Float32Array.from(rays.flatMap(({ direction, at }) => direction.map((part, axis) => eye[axis] + at * part)));
+      const values = network.evaluate(points);
+      calls += rays.length;
+      rays.forEach((ray, i) => (ray.at += Math.max(values[i] / field.occupancy.slope, 5e-4)));
+      rays = rays.filter(({ at, end }, i) => values[i] >= 1e-4 && at <= end);
+    }
+    return calls / across ** 2;
+  }
+
+  function raysOf(camera) {
+    const [axes, [wide, high]] = [camera.axes(), camera.halfSize(across, across)];
+    return Array.from({ length: across ** 2 }, (_, i) => {
+      const [x, y] = [i % across, Math.floor(i / across)].map((place) => (2 * (place + 0.5)) / across - 1);
+      const way = [0, 1, 2].map((row) => axes[row] * x * wide + axes[3 + row] * y * high - axes[6 + row]);
+      return way.map((part) => part / Math.hypot(...way));
+    });
+  }
+
+  function chord(eye, direction) {
+    const along = -eye.reduce((sum, part, axis) => sum + part * direction[axis], 0);
+    const half = Math.sqrt(Math.max(1.01 ** 2 - (Math.hypot(...eye) ** 2 - along ** 2), 0));
+    return { at: along - half, end: along + half };
+  }
 }
 
 const browser = await launched(executablePath);
