@@ -88,16 +88,24 @@ def baselines(mesh: TexturedMesh, model: NispModel, seed: int, threads: int) -> 
     sets = training_sets(Sampler(analysis, seed))
     surface = Surface.of(mesh, analysis.frame)
     tasks = [_unconditioned(model, sets), _color(model, sets, surface)]
-    return fit_networks(tasks, seed, choose_engine("auto", "cpu", False, _told), threads, _told)
+    return fitted(tasks, seed, threads)
 
 
 def unconditioned(mesh: TexturedMesh, model: NispModel, seed: int, threads: int) -> Network:
     """The network from a point to its UV with no chart to tell, fitted."""
     sets = training_sets(Sampler(analyze(mesh, seed), seed))
-    engine = choose_engine("auto", "cpu", False, _told)
-    return fit_networks([_unconditioned(model, sets)], seed, engine, threads, _told)[
-        "unconditioned"
-    ]
+    return fitted([_unconditioned(model, sets)], seed, threads)["unconditioned"]
+
+
+def fitted(tasks: list[Task], seed: int, threads: int) -> dict[str, Network]:
+    """The networks of tasks; the native backend has no loss of three colors, torch has."""
+    networks: dict[str, Network] = {}
+    for name in ("auto", "torch"):
+        alike = [task for task in tasks if (task.spec.outputs == UVS) == (name == "auto")]
+        if alike:
+            engine = choose_engine(name, "cpu", False, _told)
+            networks |= fit_networks(alike, seed, engine, threads, _told)
+    return networks
 
 
 def _unconditioned(model: NispModel, sets: TrainingSets) -> Task:
@@ -127,6 +135,7 @@ def _task(
 
 
 _UV = ("chart", "uv")
+UVS = 2
 
 
 def _schedule(model: NispModel, sets: TrainingSets) -> Schedule:

@@ -44,8 +44,8 @@ RESULTS = Path("benchmarks/results/paper_synthesized_views.json")
 FIGURE, PICTURES = Path("docs/synthesized_views.webp"), Path("build/paper/views")
 COUNT, HELD_OUT, SIZE, SEED = 100, 8, 128, 0
 SYSTEMS: dict[str, tuple[type[Drawer], ViewSchedule]] = {
-    "SRN": (SceneRepresentation, ViewSchedule(steps=1500, rays=1024, rate=1e-3)),
-    "NeRF": (RadianceField, ViewSchedule(steps=1500, rays=512, rate=2e-3)),
+    "SRN": (SceneRepresentation, ViewSchedule(steps=1500, rays=512, rate=1e-3)),
+    "NeRF": (RadianceField, ViewSchedule(steps=1500, rays=256, rate=2e-3)),
 }
 ORIGINAL, OURS = "original", "ours"
 COLUMNS = (ORIGINAL, OURS, *reversed(SYSTEMS))

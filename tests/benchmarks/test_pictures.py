@@ -5,11 +5,22 @@ import pytest
 
 from benchmarks.headline.pictures import likeness, silhouette, targets
 from benchmarks.measuring.target import Target
-from benchmarks.paper.pictures import SIZE, _of_size, sight, without_charts
+from benchmarks.paper.pictures import (
+    SIZE,
+    PointObjective,
+    _of_size,
+    fitted,
+    sight,
+    without_charts,
+)
 from nispcodec.core.network import NetworkSpec
+from nispcodec.core.sample_set import SampleSet
+from nispcodec.infer.evaluate import evaluate
 from nispcodec.model import NispModel
 from nispcodec.render.camera import Camera
 from nispcodec.render.views import scene_of
+from nispcodec.train.config import TrainConfig
+from nispcodec.train.task import Schedule, Task
 from tests import tiny
 from tests.metrics.shapes import sphere
 
@@ -63,3 +74,18 @@ def test_without_charts_every_point_has_one_uv() -> None:
     model = without_charts(NispModel(tiny.document()), free)
     first, second = (model.uv(points, charts=np.full(20, chart)) for chart in (0, 1))
     np.testing.assert_array_equal(first, second)
+
+
+def test_networks_of_uvs_and_of_colors_are_fitted() -> None:
+    points = np.random.default_rng(0).uniform(-0.1, 0.1, (500, 3)).astype(np.float32)
+    tasks = []
+    for name, outputs in (("unconditioned", 2), ("color", 3)):
+        wanted = 0.5 + 4 * points[:, :outputs]
+        samples = SampleSet(points, points[:, 0], np.zeros(500, np.int32), wanted)
+        objective = PointObjective(TrainConfig().loss)
+        spec, schedule = NetworkSpec((16,), outputs), Schedule(300, 64, 3e-3)
+        tasks.append(Task(name, spec, samples, samples, objective, schedule))
+    for name, network in fitted(tasks, 0, 1).items():
+        outputs = 2 if name == "unconditioned" else 3
+        found = evaluate(network, points)
+        assert np.abs(found - 0.5 - 4 * points[:, :outputs]).mean() < 0.1
