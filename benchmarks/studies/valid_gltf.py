@@ -35,7 +35,6 @@ OPTIONS = {
     "quantize": "-o out.glb --compress quantize",
     "gltf, meshopt": "-o out.gltf --compress meshopt",
     "colors": "-o out.glb --colors",
-    "rebake": "-o out.glb --rebake 256 --faces 500",
 }
 """Names of what is written, and the arguments of `nisp decode`."""
 TARGETS = [

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from nispcodec.core.asset import TexturedMesh
+from nispcodec.core.asset import TexturedMesh, TextureMap
 from nispcodec.core.errors import MeshError, NispError
 from nispcodec.io.load import load_mesh
 from nispcodec.io.save import write_mesh
@@ -82,6 +82,21 @@ def test_primitives_still_meet(mesh: TexturedMesh, tmp_path: Path, how: str) -> 
     sides = [np.unique(mesh.faces[mesh.face_materials == each]) for each in (0, 1)]
     shared = np.intersect1d(sides[0], sides[1])
     assert len(left & right) >= len(shared) > 0
+
+
+@ALL
+def test_tangents_are_of_eight_bits(mesh: TexturedMesh, tmp_path: Path, how: str) -> None:
+    bumpy = {"base_color": TextureMap(0), "normal": TextureMap(0)}
+    made = replace(mesh, materials=tuple(replace(each, maps=bumpy) for each in mesh.materials))
+    back(made, tmp_path, how)
+    tree = json_of(tmp_path / f"{how}.glb")
+    assert "KHR_mesh_quantization" in tree["extensionsRequired"]
+    for primitive in tree["meshes"][0]["primitives"]:
+        names = primitive["attributes"]
+        stated, places = (tree["accessors"][names[name]] for name in ("TANGENT", "POSITION"))
+        assert (stated["componentType"], stated["type"]) == (5120, "VEC4")
+        assert stated["normalized"]
+        assert stated["count"] == places["count"]
 
 
 @ALL

@@ -246,7 +246,7 @@ def test_gltf_says_what_a_glb_says(mesh: TexturedMesh, tmp_path: Path) -> None:
     inside, _ = glb_parts(glb_bytes(mesh))
     same = ("scene", "scenes", "nodes", "materials", "textures", "samplers")
     assert [tree[key] for key in same] == [inside[key] for key in same]
-    assert {each["type"] for each in tree["accessors"]} == {"VEC2", "VEC3", "SCALAR"}
+    assert {each["type"] for each in tree["accessors"]} == {"VEC2", "VEC3", "VEC4", "SCALAR"}
 
 
 def test_gltf_has_png_for_avif(mesh: TexturedMesh, tmp_path: Path) -> None:

@@ -1,9 +1,10 @@
 """Geometry of a glTF in fewer bytes: quantized, and coded by meshoptimizer or Draco.
 
-- quantize: positions of 16 bits, normals of 8, texture coordinates of 16 where they are in [0, 1]
-  (KHR_mesh_quantization).
+- quantize: positions of 16 bits, normals and tangents of 8, texture coordinates of 16 where they
+  are in [0, 1] (KHR_mesh_quantization).
 - meshopt: the same, coded by meshoptimizer (EXT_meshopt_compression).
-- draco: positions of 15 bits, normals of 8, texture coordinates of 14 (KHR_draco_mesh_compression).
+- draco: positions of 15 bits, normals of 8, texture coordinates of 14 (KHR_draco_mesh_compression);
+  tangents beside it, of 8 bits.
 
 Images stay as they are. All primitives share one grid, so that they meet as before.
 """
@@ -18,6 +19,8 @@ from typing import Any
 import numpy as np
 
 from nispcodec.core.arrays import AnyArray, Float64Array, Uint32Array
+from nispcodec.io.write.tangents import tangents
+from nispcodec.io.write.vertices import Vertices
 
 Json = dict[str, Any]
 Arrays = dict[str, AnyArray]
@@ -50,6 +53,7 @@ class _Packer:
     how: str
     buffer: bytearray = field(default_factory=bytearray)
     fallback: int = 0
+    quantized: bool = False
 
     def run(self) -> tuple[Json, bytes]:
         self.tree["bufferViews"], self.tree["accessors"] = [], []
@@ -64,7 +68,8 @@ class _Packer:
                 image["bufferView"] = self.view(self.bytes_of(image["bufferView"]))
         if self.how != "draco":
             grid.place(self.tree["nodes"][0])
-        self.declare({"draco": [DRACO], "meshopt": [QUANTIZATION, MESHOPT]})
+        draco = [DRACO, QUANTIZATION] if self.quantized else [DRACO]
+        self.declare({"draco": draco, "meshopt": [QUANTIZATION, MESHOPT]})
         self.buffer += bytes(-len(self.buffer) % 4)
         self.tree["buffers"] = [{"byteLength": len(self.buffer)}]
         if self.fallback:
@@ -145,11 +150,30 @@ class _Packer:
         data = _draco(arrays, indices, grid)
         ids, content, faces = _undone(data)
         names = primitive["attributes"]
+        if "TANGENT" in names:
+            self.tangents(names, content, faces)
         for name, values in content.items():
             names[name] = self.accessor(name, values, None)
-        primitive["indices"] = self.add("accessors", _stated(faces, "SCALAR", UINT))
+        primitive["indices"] = self.add("accessors", _stated(faces.size, "SCALAR", UINT))
         stored = {"bufferView": self.view(data), "attributes": ids}
         primitive["extensions"] = {DRACO: stored}
+
+    def tangents(self, names: Json, content: Arrays, faces: AnyArray) -> None:
+        """Those of the vertices that a decoder finds, beside what Draco holds.
+
+        Draco knows no tangents, and as any attribute they would take 16 bytes each.
+        """
+        uvs = content["TEXCOORD_0"] * np.array([1, -1], np.float32) + np.array([0, 1], np.float32)
+        vertices = Vertices(
+            positions=content["POSITION"].astype(np.float64),
+            uvs=uvs,
+            normals=content["NORMAL"],
+            faces=faces.astype(np.uint32),
+            sources=np.arange(len(uvs)),
+        )
+        rounded = np.rint(tangents(vertices) * 127).astype("<i1")
+        names["TANGENT"] = self.attribute("TANGENT", rounded)
+        self.quantized = True
 
     def accessor(self, name: str, values: AnyArray, view: int | None) -> int:
         kind = next(each for each, code in TYPES.items() if np.dtype(code) == values.dtype)
@@ -183,7 +207,7 @@ class _Grid:
     def quantized(self, name: str, values: AnyArray) -> AnyArray:
         if name == "POSITION":
             return np.rint((values - self.low) * (HIGHEST / self.size)).astype("<u2")
-        if name == "NORMAL":
+        if name in ("NORMAL", "TANGENT"):
             return np.rint(values * 127).astype("<i1")
         if values.min(initial=0) < 0 or values.max(initial=0) > 1:
             return values.astype("<f4")
@@ -246,8 +270,8 @@ def _draco(arrays: Arrays, indices: Uint32Array, grid: _Grid) -> bytes:
     )
 
 
-def _undone(data: bytes) -> tuple[dict[str, int], Arrays, int]:
-    """The unique id of each attribute, its values, and how many indices there are.
+def _undone(data: bytes) -> tuple[dict[str, int], Arrays, AnyArray]:
+    """The unique id of each attribute, its values, and the faces (m, 3).
 
     Draco joins vertices that rounding made equal: accessors state what a decoder finds.
     """
@@ -256,7 +280,7 @@ def _undone(data: bytes) -> tuple[dict[str, int], Arrays, int]:
     mesh = DracoPy.decode(data)
     named = {DRACO_KINDS[each["attribute_type"]]: each for each in mesh.attributes}
     ids = {name: each["unique_id"] for name, each in named.items()}
-    return ids, {name: np.asarray(each["data"]) for name, each in named.items()}, mesh.faces.size
+    return ids, {name: np.asarray(each["data"]) for name, each in named.items()}, mesh.faces
 
 
 def _doubles(values: AnyArray | None) -> AnyArray | None:

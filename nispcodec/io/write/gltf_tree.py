@@ -13,6 +13,7 @@ from nispcodec.core.asset import Material, Texture, TexturedMesh, TextureMap
 from nispcodec.core.slots import BY_NAME, Slot
 from nispcodec.core.texture import srgb_to_linear
 from nispcodec.io.write.plain_images import plain_image
+from nispcodec.io.write.tangents import tangents, without_mirrors
 from nispcodec.io.write.vertices import Normals, groups, origin, shading_normals, split_vertices
 
 Json = dict[str, Any]
@@ -100,7 +101,9 @@ class _Builder:
         material: int,
         has_uv: bool,
     ) -> Json:
+        bumpy = has_uv and "normal" in mesh.materials[material].maps
         vertices = split_vertices(mesh, faces, normals)
+        vertices = without_mirrors(vertices) if bumpy else vertices
         near = (vertices.positions - self.origin).astype(np.float32)
         positions = self.accessor(near, "VEC3", ARRAY_BUFFER)
         limits = {"min": near.min(axis=0).tolist(), "max": near.max(axis=0).tolist()}
@@ -110,6 +113,8 @@ class _Builder:
         if has_uv:
             flipped = np.column_stack([vertices.uvs[:, 0], 1 - vertices.uvs[:, 1]])
             attributes["TEXCOORD_0"] = self.accessor(flipped, "VEC2", ARRAY_BUFFER)
+        if bumpy:
+            attributes["TANGENT"] = self.accessor(tangents(vertices), "VEC4", ARRAY_BUFFER)
         if self.colors is not None:
             linear = self.colors[vertices.sources]
             linear[:, :3] = srgb_to_linear(linear[:, :3])
