@@ -114,11 +114,17 @@ class _Fits:
         """How far points are from their label's map, in octaves."""
         return float(self.bits.sum() / self.moments[:, -3, -3].sum())
 
-    def _choose(self, chart: int, labels: Sequence[int]) -> int:
-        """The label that it costs the least to add this chart to, which is done."""
+    def _choose(self, chart: int, labels: Sequence[int], left: int | None = None) -> int:
+        """The label that it costs the least to add this chart to, which is done.
+
+        left: the one of the labels that the chart was taken from.
+        """
         together = self.mixed[labels] + self.moments[chart]
-        bits = _bits(together, self.config)
-        best = int(np.argmin(bits - self.bits[labels]))
+        asked = together if left is None else np.concatenate([together, self.mixed[left][None]])
+        bits = _bits(asked, self.config)
+        if left is not None:
+            self.bits[left] = bits[-1]
+        best = int(np.argmin(bits[: len(labels)] - self.bits[labels]))
         label = labels[best]
         self.mixed[label], self.bits[label] = together[best], bits[best]
         return label
@@ -128,21 +134,21 @@ class _Fits:
         before = list(self.labels)
         for chart, label in enumerate(before):
             self.mixed[label] -= self.moments[chart]
-            self.bits[label] = _bits(self.mixed[label][None], self.config)[0]
             taken = {self.labels[other] for other in self.neighbors[chart]}
             kind = self.kinds[chart]
             free = [n for n, k in enumerate(self.palette) if k == kind and n not in taken]
-            self.labels[chart] = self._choose(chart, free)
+            self.labels[chart] = self._choose(chart, free, label)
         return self.labels != before
 
 
 def _bits(moments: Float64Array, config: MergingConfig) -> Float64Array:
     """(n,) logarithms of how far UVs are from the affine maps of least squares, for every point."""
-    points, size = moments[:, -3, -3], moments.shape[1]
-    known = moments[:, :-2, :-2] + config.ridge * np.eye(size - 2)
+    points, diagonal = moments[:, -3, -3], np.arange(moments.shape[1] - 2)
+    known = moments[:, :-2, :-2].copy()
+    known[:, diagonal, diagonal] += config.ridge
     cross = moments[:, :-2, -2:]
     explained = np.einsum("nij,nij->n", cross, np.linalg.solve(known, cross))
-    left = np.trace(moments[:, -2:, -2:], axis1=1, axis2=2) - explained
+    left = moments[:, -2, -2] + moments[:, -1, -1] - explained
     apart = np.maximum(left, 0) / np.maximum(points, 1) + config.floor**2
     bits: Float64Array = 0.5 * points * np.log2(apart)
     return bits
