@@ -20,7 +20,8 @@ RULES: dict[str, tuple[set[str], set[str]]] = {
         {"numpy", "PIL", "DracoPy", "meshoptimizer", "opengl_basisu", "pxr", "trimesh"},
         {"core"},
     ),
-    "geometry": ({"numpy", "scipy", "igl"}, {"core"}),
+    # What is closest, and inside, is told by the kernel that answers for mesh parts.
+    "geometry": ({"numpy", "scipy", "igl"}, {"core", "infer"}),
     "dataset": ({"numpy", "scipy"}, {"core", "geometry"}),
     "simplify": (
         {"numpy", "scipy", "igl", "meshoptimizer"},
@@ -141,6 +142,8 @@ STRUCTURAL = {
     "nispcodec/extract/grid.py CUBE",
     "nispcodec/extract/isosurface.py BALL",
     "nispcodec/extract/neighbors.py PAIRS",
+    "nispcodec/geometry/nearest.py BLOCK",
+    "nispcodec/geometry/winding.py BLOCK",
     "nispcodec/geometry/z_order.py APART",
     "nispcodec/geometry/z_order.py BITS",
     "nispcodec/simplify/closest.py FLAT",

@@ -4,13 +4,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
-import igl
 import numpy as np
 
 from nispcodec.core.arrays import BoolArray, Float64Array, Int64Array
 from nispcodec.geometry.config import SolidConfig
+from nispcodec.geometry.nearest import NearestTriangles
 from nispcodec.geometry.solid import Solid
-from nispcodec.geometry.z_order import z_order
 
 NEAREST = np.sqrt(np.finfo(np.float64).eps)
 
@@ -54,26 +53,22 @@ class DistanceField:
 
         Without `signed` all of space counts as outside, which saves most of the time.
         """
-        return self._ordered(points, (signed,))[0]
+        return self._found(points, (signed,))[0]
 
     def both(self, points: Float64Array) -> tuple[Closest, Closest]:
         """`closest` of points (n, 3) with signs, and without, for hardly more than one of them."""
-        signed, unsigned = self._ordered(points, (True, False))
+        signed, unsigned = self._found(points, (True, False))
         return signed, unsigned
 
-    def _ordered(self, points: Float64Array, signs: tuple[bool, ...]) -> list[Closest]:
+    def _found(self, points: Float64Array, signs: tuple[bool, ...]) -> list[Closest]:
         points = np.ascontiguousarray(points, dtype=np.float64)
-        order = z_order(points)
-        back = np.empty_like(order)
-        back[order] = np.arange(len(order))
-        ordered = points[order]
-        walls, sheets = self._walls.closest(ordered), self._sheets.closest(ordered)
+        walls, sheets = self._walls.closest(points), self._sheets.closest(points)
         found = []
         for signed in signs:
             sdf = walls.sdf.copy()
             if signed:
-                sdf[self._inside(ordered, walls)] *= -1
-            found.append(self._thickened(replace(walls, sdf=sdf), sheets)[back])
+                sdf[self._inside(points, walls)] *= -1
+            found.append(self._thickened(replace(walls, sdf=sdf), sheets))
         return found
 
     def _thickened(self, walls: Closest, sheets: Closest) -> Closest:
@@ -135,20 +130,13 @@ class _Tree:
 
     def __init__(self, pieces: Float64Array, chosen: BoolArray) -> None:
         self.index = np.flatnonzero(chosen)
-        triangles = pieces[self.index]
-        self.vertices = np.ascontiguousarray(triangles.reshape(-1, 3))
-        self.faces = np.arange(3 * len(triangles), dtype=np.int64).reshape(-1, 3)
-        self.tree = igl.AABB()
-        self.count = len(self.faces)
-        if self.count:
-            self.tree.init(self.vertices, self.faces)
+        self.triangles = NearestTriangles(pieces[self.index]) if len(self.index) else None
 
     def closest(self, points: Float64Array) -> Closest:
-        """Of points (n, 3), best in the order of space."""
-        if not self.count or not len(points):
-            nowhere = np.zeros(len(points), dtype=np.int64)
-            away = np.full(len(points), np.inf)
-            return Closest(away, nowhere, np.zeros_like(points), nowhere > 0)
-        squared, face, point = self.tree.squared_distance(self.vertices, self.faces, points)
+        """Of points (n, 3)."""
         on_sheet = np.zeros(len(points), dtype=bool)
-        return Closest(np.sqrt(squared), self.index[face], point, on_sheet)
+        if self.triangles is None:
+            nowhere = np.zeros(len(points), dtype=np.int64)
+            return Closest(np.full(len(points), np.inf), nowhere, np.zeros_like(points), on_sheet)
+        found = self.triangles.closest(points)
+        return Closest(found.distances, self.index[found.faces], found.positions, on_sheet)

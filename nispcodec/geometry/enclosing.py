@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-import igl
 import numpy as np
 
 from nispcodec.core.arrays import BoolArray, Float64Array, IntArray
 from nispcodec.geometry.bodies import Bodies
 from nispcodec.geometry.config import SolidConfig
+from nispcodec.geometry.nearest import NearestTriangles
 from nispcodec.geometry.rays import leaves, ways_beside
 from nispcodec.geometry.triangles import area, normals
 from nispcodec.geometry.winding import Winding
@@ -55,7 +55,7 @@ def _exposed(corners: Float64Array, opening: Float64Array, config: SolidConfig) 
     nobody modeled. Openings beside the mesh (flat cards, panels) need no such care.
     """
     center = opening.mean(axis=1)
-    number = Winding(corners, config.winding_accuracy).at(center)
+    number = Winding(corners, config.winding).at(center)
     exposed: BoolArray = np.abs(np.abs(number) - 0.5) < config.undecided
     # Where shells are stacked, their neighbors decide the number, and close nothing.
     apart = _gap(corners, center) > config.plugged_gap
@@ -85,7 +85,7 @@ def _with_sheets(
         sizes, shown = area(corners[faces]), corners[faces]
         in_front = shown.mean(axis=1) + config.probe_offset * normals(shown)
         others = corners[~free[body]]
-        front = Winding(others, config.winding_accuracy).at(in_front)
+        front = Winding(others, config.winding).at(in_front)
         total = np.maximum(np.bincount(body[faces], sizes, len(free)), TINY)
         mean = np.bincount(body[faces], front * sizes, len(free)) / total
         loose = np.abs(mean + 0.5) < 0.5 - config.closing
@@ -161,10 +161,7 @@ def _escaping(
 def _gap(corners: Float64Array, points: Float64Array) -> Float64Array:
     if not len(points):
         return np.zeros(0)
-    faces = np.arange(3 * len(corners), dtype=np.int64).reshape(-1, 3)
-    vertices = np.ascontiguousarray(corners.reshape(-1, 3))
-    squared: Float64Array = igl.point_mesh_squared_distance(points, vertices, faces)[0]
-    return np.sqrt(squared)
+    return NearestTriangles(corners).closest(points).distances
 
 
 def _openings(corners: Float64Array, bodies: Bodies) -> tuple[Float64Array, IntArray]:

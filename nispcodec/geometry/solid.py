@@ -67,9 +67,7 @@ def build_solid(
     bodies = find_bodies(corners, welding.positions, config)
     faces = _in_order(corners, bodies, config)
     enclosing = faces.corners[~faces.free & faces.once]
-    winding = Winding(
-        enclosing, config.winding_accuracy, config.rough_accuracy, config.rough_margin
-    )
+    winding = Winding(enclosing, config.winding, often=True)
     shown = np.flatnonzero(~faces.free & ~faces.behind)
     pieces, parents, kind, front, whole = _classify(winding, faces.corners[shown], shown, config)
     seen, sheets = kind != _HIDDEN, faces.corners[faces.free]

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 
 from nispcodec.core.arrays import Float64Array, Int64Array
+from nispcodec.geometry.nearest import NearestTriangles
 
 
 @dataclass(frozen=True)
@@ -33,15 +33,9 @@ class Tree:
 
     def closest(self, points: Float64Array) -> Hits:
         """The closest point of the triangles for each of (n, 3) points."""
-        import igl
-
-        vertices, indices, which, tree = self._tree
-        _, found, positions = tree.squared_distance(vertices, indices, points)
-        faces = which[found]
-        a, b, c = np.moveaxis(self.corners[faces], 1, 0)
-        weights = np.clip(igl.barycentric_coordinates(positions, a, b, c), 0, 1)
-        weights /= weights.sum(axis=1, keepdims=True)
-        return Hits(faces, weights, positions)
+        which, triangles = self._solid
+        found = triangles.closest(points)
+        return Hits(which[found.faces], found.weights, found.positions)
 
     @cached_property
     def normals(self) -> Float64Array:
@@ -61,18 +55,12 @@ class Tree:
         return crosses
 
     @cached_property
-    def _tree(self) -> tuple[Float64Array, Int64Array, Int64Array, Any]:
-        import igl
-
-        # Faces without area have no barycentric coordinates.
+    def _solid(self) -> tuple[Int64Array, NearestTriangles]:
+        # Faces without area have no normal that tells on which side of them one is.
         edges = self.corners - np.roll(self.corners, 1, axis=1)
         longest = np.square(edges).sum(axis=2).max(axis=1)
         which = np.flatnonzero(2 * self.areas > FLAT * longest)
-        vertices = np.ascontiguousarray(self.corners[which].reshape(-1, 3))
-        indices = np.arange(len(vertices), dtype=np.int64).reshape(-1, 3)
-        tree = igl.AABB()
-        tree.init(vertices, indices)
-        return vertices, indices, which, tree
+        return which, NearestTriangles(self.corners[which])
 
 
 FLAT = 1e-7
