@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import shutil
 import time
-from dataclasses import replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -14,7 +14,7 @@ from .choices import LibraryChoice, engines, geometries, presets, texture_format
 from .errors import warn
 from .lines import duration
 from .outputs import OutputFile, nisp_suffix, output_option, refuse_overwriting_others
-from .parts import parts_of, why
+from .parts import in_a_line, parts_of, why, with_errors
 from .progress import progress_options, shown
 from .pruning import pruning_options
 from .ranges import Real, Whole
@@ -132,42 +132,51 @@ def command(
     asset = _loaded(mesh, unwrap)
     warn(asset.warnings)
     _expect_possible(asset, config, output)
-    model, found = _encoded(asset, config, progress, quiet)
-    asset = replace(asset, warnings=(*asset.warnings, *found))
+    heard = _Heard()
+    model = _encoded(asset, config, progress, quiet, heard)
+    asset = replace(asset, warnings=(*asset.warnings, *heard.warnings))
     nispcodec.save(model, output)
     report = _report(model, asset, config, mesh, output, time.monotonic() - started)
+    report["parts"] = with_errors(report["parts"], heard.part_errors)
     if as_json:
         print_json(report)
     else:
         _print_report(report)
 
 
+@dataclass
+class _Heard:
+    """The warnings and errors that an encode tells by the way, for its report."""
+
+    warnings: list[str] = field(default_factory=list)
+    part_errors: tuple[tuple[float, float], ...] = ()
+
+    def beside(self, listen: Listener) -> Listener:
+        """The listener, with what is warned of as a note, and kept to be said again.
+
+        A note may go by, or not be shown at all, but a warning is read by who looks at the end.
+        """
+
+        def heard(update: Progress) -> None:
+            if update.warning:
+                self.warnings.append(update.warning)
+            self.part_errors = update.part_errors or self.part_errors
+            listen(replace(update, note=update.note or update.warning))
+
+        return heard
+
+
 def _encoded(
-    asset: TexturedMesh, config: EncodeConfig, progress: str, quiet: bool
-) -> tuple[NispModel, list[str]]:
-    """The model, and what was warned of, which is said at the end whatever happens."""
+    asset: TexturedMesh, config: EncodeConfig, progress: str, quiet: bool, heard: _Heard
+) -> NispModel:
+    """The model; what was warned of is said at the end whatever happens."""
     import nispcodec
 
-    found: list[str] = []
     try:
         with shown("encode", progress, quiet) as listen:
-            return nispcodec.encode(asset, config, progress=_with_warnings(listen, found)), found
+            return nispcodec.encode(asset, config, progress=heard.beside(listen))
     finally:
-        warn(found)
-
-
-def _with_warnings(listen: Listener, found: list[str]) -> Listener:
-    """The listener, with what is warned of as a note, and added to `found` to be said again.
-
-    A note may go by, or not be shown at all, but a warning is read by who looks at the end.
-    """
-
-    def heard(update: Progress) -> None:
-        if update.warning:
-            found.append(update.warning)
-        listen(replace(update, note=update.note or update.warning))
-
-    return heard
+        warn(heard.warnings)
 
 
 def _loaded(path: Path, unwrap: bool) -> TexturedMesh:
@@ -238,6 +247,9 @@ def _print_report(report: dict[str, Any]) -> None:
     parts, source = report["bytes"], report["input_bytes"]
     click.echo(f"{report['file']}: {parts['total']:,} bytes, from {sum(source.values()):,}")
     click.echo(f"  held as {report['held_as']}")
+    if len(report["parts"]) > 1:
+        for part in report["parts"]:
+            click.echo(f"    {in_a_line(part)}")
     print_group("bytes", parts, "  ")
     print_group("input_bytes", source, "  ")
     print_group("measured", report["measured"], "  ")

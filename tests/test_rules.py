@@ -305,6 +305,8 @@ TESTED_ELSEWHERE = {
     "metrics/parameterization.py": "metrics/test_parts.py",
     "metrics/spurious.py": "metrics/test_parts.py",
     "metrics/surface.py": "metrics/test_parts.py",
+    # What is told by the way: who shows it.
+    "core/progress.py": "cli/test_progress.py",
     # What only a picture shows.
     "render/channels.py": "render/test_field.py",
     "render/difference.py": "render/test_images.py",

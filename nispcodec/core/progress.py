@@ -25,6 +25,8 @@ class Progress:
     seconds_left  estimate for this network
     note          something worth a line of its own, such as a retry
     warning       something about the asset or its fit that its owner should know
+    part_errors   told once, at the end: of each part of what was made the mean distance of its
+                  surface to the original's (normalized frame), and the mean UV error
     overall       share of the whole work that is done, 0 to 1, never less than told before;
                   NaN when it is not known
     """
@@ -38,6 +40,7 @@ class Progress:
     seconds_left: float = float("nan")
     note: str = ""
     warning: str = ""
+    part_errors: tuple[tuple[float, float], ...] = ()
     overall: float = float("nan")
 
 

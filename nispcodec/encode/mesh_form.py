@@ -8,12 +8,14 @@ from dataclasses import replace
 from functools import cached_property, partial
 
 from nispcodec.core.arrays import BoolArray
+from nispcodec.core.asset import TexturedMesh
 from nispcodec.core.document import Document, Field
 from nispcodec.core.mesh_part import MAX_GRID_BITS, MeshPart
 from nispcodec.core.progress import Listener, Progress
 from nispcodec.encode.bodies import Sorted, sort_bodies
 from nispcodec.encode.config import FormConfig
 from nispcodec.encode.mesh_size import fewest, nearest_of_size
+from nispcodec.encode.part_errors import part_errors
 from nispcodec.encode.rungs import Rungs
 from nispcodec.extract.meshing import default_resolution, expected_faces, textured_mesh
 from nispcodec.format import mesh
@@ -44,6 +46,7 @@ class MeshForm:
     ) -> None:
         self._analysis, self._seed, self._config = analysis, seed, config
         self._progress = progress
+        self._last: tuple[Document, TexturedMesh] | None = None
 
     @cached_property
     def simplifier(self) -> Simplifier:
@@ -85,11 +88,24 @@ class MeshForm:
     def errors(self, document: Document) -> Errors:
         """How far the surface that a document decodes to is off."""
         self._progress(Progress(stage="surface"))
-        mesh, _ = textured_mesh(document, self._resolution(document.field))
-        positions = document.frame.to_normalized(mesh.positions)
+        return self._original_of(document).errors(self._decoded(document))
+
+    def part_errors(self, document: Document) -> tuple[tuple[float, float], ...]:
+        """The mean distance to the original, and the mean UV error, of each part of a document."""
+        original, samples = self._original_of(document), self._config.ladder.samples
+        return tuple(part_errors(document, self._decoded(document), original, samples))
+
+    def _original_of(self, document: Document) -> Original:
         both = document.field is not None and bool(document.meshes)
-        original = self._original if both else self.simplifier.original
-        return original.errors(replace(mesh, positions=positions))
+        return self._original if both else self.simplifier.original
+
+    def _decoded(self, document: Document) -> TexturedMesh:
+        """The decoded mesh, positions in the normalized frame; the last one is kept."""
+        if self._last is None or self._last[0] is not document:
+            mesh, _ = textured_mesh(document, self._resolution(document.field))
+            positions = document.frame.to_normalized(mesh.positions)
+            self._last = document, replace(mesh, positions=positions)
+        return self._last[1]
 
     def sorted_bodies(self) -> Sorted:
         """By the largest candidate that an estimate has made."""
@@ -150,14 +166,17 @@ class MeshForm:
         return found
 
     def _whole(self, most_bytes: float) -> Iterator[Candidate]:
-        """Every face, rounded to several errors, where that may be had for so many bytes."""
+        """Every face, rounded to smaller and smaller errors, up to so many bytes."""
         everything = len(self.simplifier.source.triangles)
         if everything * self._config.least_bytes_per_face > most_bytes:
             return
         uv_bits = self.simplifier.uv_bits_for(self._config.negligible_uv)
         for coarseness in self._config.coarseness:
             bits = self.simplifier.bits_for(coarseness * self._config.negligible)
-            yield self.simplifier.candidate(everything, bits, uv_bits)
+            found = self.simplifier.candidate(everything, bits, uv_bits)
+            yield found
+            if found.size > most_bytes:
+                return
 
     def within(self, distance: float, uv: float) -> Candidate | None:
         """The fewest bytes at these errors at most; None where there is no such candidate."""

@@ -75,7 +75,7 @@ def _encoded(
     if config.geometry == "mesh" or choice.settled:
         chosen = choice.triangles()
         info = measured(chosen, analysis, config)
-        return _finished(chosen, info, mesh.name, config, tuning, progress)
+        return _finished(chosen, info, form, mesh.name, config, tuning, progress)
     held = field.fit(document, choice.wants_field)
     parts: tuple[MeshPart, ...] = ()
     if choice.split:
@@ -87,20 +87,22 @@ def _encoded(
     else:
         chosen = choice.triangles()
     info = measured(chosen, analysis, config, engine.name, field.sets)
-    return _finished(chosen, info, mesh.name, config, tuning, progress)
+    return _finished(chosen, info, form, mesh.name, config, tuning, progress)
 
 
 def _finished(
     chosen: Chosen,
     info: Mapping[str, str | int | float | bool],
+    form: MeshForm,
     name: str,
     config: EncodeConfig,
     tuning: Tuning,
     progress: Listener,
 ) -> NispModel:
-    """The model, after its owner was warned of surface that is made up or lost."""
+    """The model, after its owner was told what its parts are off, and warned of made-up surface."""
     notable = tuning.forms.notable_far
     better = tuning.training.better_than(config.preset)
     for warning in far_warnings(chosen.document, chosen.errors, better, notable):
         progress(Progress(stage="surface", warning=f"{name}: {warning}"))
+    progress(Progress(stage="surface", part_errors=form.part_errors(chosen.document)))
     return NispModel(replace(chosen.document, info=info))

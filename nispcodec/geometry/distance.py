@@ -133,7 +133,7 @@ class _Tree:
         self.triangles = NearestTriangles(pieces[self.index]) if len(self.index) else None
 
     def closest(self, points: Float64Array) -> Closest:
-        """Of points (n, 3)."""
+        """The closest points to points (n, 3)."""
         on_sheet = np.zeros(len(points), dtype=bool)
         if self.triangles is None:
             nowhere = np.zeros(len(points), dtype=np.int64)

@@ -44,7 +44,7 @@ class NearestTriangles:
         self._faces = _faces_by_kernel(corners) or _faces_by_libigl(corners)
 
     def closest(self, points: Float64Array) -> Nearest:
-        """Of points (n, 3), in any order, on every core."""
+        """The closest points to points (n, 3), which are in any order, on every core."""
         found = Nearest(
             np.empty(len(points), np.int64),
             np.empty(len(points)),

@@ -118,6 +118,17 @@ class Original:
         misses = [self.paint.misses(self.surface, other, each) for each in directions]
         return float(np.sqrt(np.concatenate(misses).mean()))
 
+    def errors_from(self, part: TexturedMesh, samples: int) -> tuple[float, float]:
+        """The mean distance and the mean UV error of so many points of a part: one direction only.
+
+        As `errors`. Raises MeshError where no face of the part has an area.
+        """
+        other = Surface(part, part.positions)
+        points = other.sample(samples, np.random.default_rng([self.seed, 2]))
+        match = Matches(self._closest(points), points)
+        misses = uv_errors(self.surface, other, match)
+        return float(match.distances.mean()), float(misses.mean()) if len(misses) else 0.0
+
     def _nowhere(self, far: FarPoints) -> FarPoints:
         """Those that are far from hidden faces too."""
         if self.whole is self.tree or not len(far.positions):

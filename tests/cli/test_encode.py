@@ -5,6 +5,7 @@ from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
+from nispcodec_cli.parts import in_a_line, with_errors
 
 from nispcodec.core.errors import FitError
 from nispcodec.core.progress import Listener, Progress
@@ -205,3 +206,13 @@ def test_missing_texture_is_a_warning(encoder: Encoder, mesh: Path, tmp_path: Pa
     result = nisp("encode", mesh, "-o", tmp_path / "out.nisp", "--quiet")
     assert result.exit_code == 0
     assert "nisp: warning: " in result.stderr
+
+
+def test_the_report_says_of_every_part_why_it_is_one_and_what_it_is_off() -> None:
+    parts = [{"name": "field", "bytes": 4321, "why": "dense and smooth bodies"}, {"name": "mesh 1"}]
+    first, second = with_errors(parts, [(7.1849e-4, 0.02331), (float("nan"), float("nan"))])
+    assert in_a_line(first) == (
+        "field: 4,321 bytes, 0.000718 off, UVs 0.0233; dense and smooth bodies"
+    )
+    assert second == {"name": "mesh 1"}
+    assert with_errors(parts, []) == parts
