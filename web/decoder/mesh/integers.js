@@ -15,12 +15,15 @@ export function quarterOf(scale) {
   return scale ? Math.floor((4 * scale) / 2 ** (bitLength(scale) - 1)) & 3 : 0;
 }
 
-/** Integers without so many of their last bits that `bits` are enough for each. @param {number[]} values @param {number} bits */
+/** Takes so many last bits from integers that `bits` are enough for each. @param {number[]} values changed @param {number} bits */
 export function shortened(values, bits) {
   let most = 0;
   for (let i = 0; i < values.length; i++) most = Math.max(most, Math.abs(values[i]));
   const spare = bitLength(most) - bits;
-  return spare > 0 ? values.map((value) => Math.floor(value / 2 ** spare)) : values;
+  if (spare <= 0) return values;
+  const unit = 2 ** -spare;
+  for (let i = 0; i < values.length; i++) values[i] = Math.floor(values[i] * unit);
+  return values;
 }
 
 /** @param {number} square an integer below 2^52 */

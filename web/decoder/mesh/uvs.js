@@ -159,7 +159,8 @@ class UvReader {
     const { found, places } = this;
     const [ua, va] = [found[2 * a], found[2 * a + 1]];
     const [u, v] = [found[2 * b] - ua, found[2 * b + 1] - va];
-    const ways = shortened([b, node, c >= 0 ? c : a].flatMap((to) => wayBetween(places, a, to)), 10);
+    const beyond = c >= 0 ? c : a;
+    const ways = shortened([...wayBetween(places, a, b), ...wayBetween(places, a, node), ...wayBetween(places, a, beyond)], 10);
     const square = product(ways, 0, 0);
     const height = (/** @type {number} */ at, /** @type {number} */ part) =>
       rootOf(Math.max(square * product(ways, at, at) - part * part, 0));
@@ -168,11 +169,11 @@ class UvReader {
     const high = height(3, part);
     const [pu, pv] = [ua + rounded(u * part, square), va + rounded(v * part, square)];
     if (c >= 0) {
-      const beyond = product(ways, 0, 6);
-      const other = height(6, beyond);
-      if (other && other * 4 >= high && Math.abs(beyond) <= 16 * square) {
-        const du = rounded((rounded(u * beyond, square) - found[2 * c] + ua) * high, other);
-        const dv = rounded((rounded(v * beyond, square) - found[2 * c + 1] + va) * high, other);
+      const along = product(ways, 0, 6);
+      const other = height(6, along);
+      if (other && other * 4 >= high && Math.abs(along) <= 16 * square) {
+        const du = rounded((rounded(u * along, square) - found[2 * c] + ua) * high, other);
+        const dv = rounded((rounded(v * along, square) - found[2 * c + 1] + va) * high, other);
         return { u: pu + du, v: pv + dv, whole: true, du: 0, dv: 0 };
       }
     }
