@@ -42,8 +42,8 @@ TARGETS = [
     Target("parse, s", ("parse_seconds", "least"), 0.02),
     Target("mesh of 128 cells, first, s", ("meshes", "128", "first_seconds"), 1),
     Target("mesh of 256 cells, first, s", ("meshes", "256", "first_seconds"), 3),
-    Target("page without images, bytes", ("page_without_images_bytes",), 120_000),
 ]
+SPOT = [Target("page without images, bytes", ("page_without_images_bytes",), 120_000)]
 FIELDS = [
     Target("SDF queries / plain loops", ("wasm_over_loops",), 15, at_least=True),
     Target("SDF queries a second", ("sdf_points_per_second", "wasm"), 1e6, at_least=True),
@@ -55,9 +55,11 @@ SIZES = [
 
 
 def asked(result: Record) -> Iterator[Asked]:
-    """The targets of each asset, those of fields where it has one, and those of sizes."""
+    """The targets of each asset, of spot, of fields where there is one, and those of sizes."""
+    spot = {"spot": result["assets"].get("spot", {})}
     fields = {name: each for name, each in result["assets"].items() if "sdf_layers" in each}
     yield from asked_of_each(result["assets"], lambda _: TARGETS)
+    yield from asked_of_each(spot, lambda _: SPOT)
     yield from asked_of_each(fields, lambda _: FIELDS)
     yield from asked_of_each({"decoder": result["sizes"]}, lambda _: SIZES)
 
