@@ -140,8 +140,8 @@ class Choice:
             instead = self._instead(field, size, errors)
             if instead:
                 return instead
-        surely_larger = max(self._forms.surely_larger, self._worth)
-        if not self._open or self._estimate > surely_larger * size:
+        surely_larger = self._forms.surely_larger * self._worth * size
+        if not self._open or self._estimate > surely_larger:
             return Chosen(field, errors, self._estimate)
         found = self._rival(size, errors)
         if found is None:
