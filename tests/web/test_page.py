@@ -131,3 +131,14 @@ def test_meshes_of_the_file_and_of_the_original_look_alike(tmp_path: Path) -> No
     assert "triangles" in found["pictures"][0]["facts"]
     assert psnr(picture(tmp_path, "mesh"), rendered(document)) >= 35
     assert psnr(picture(tmp_path, "original"), picture(tmp_path, "mesh")) >= 35
+
+
+@pytest.mark.slow
+def test_no_line_of_the_wireframe_is_behind_its_surface(tmp_path: Path) -> None:
+    asked = [request("plain"), request("lines", wireframe=True)]
+    shown(viewer_page(pack(tiny.document()), "tiny"), asked, tmp_path)
+    plain, lines = picture(tmp_path, "plain"), picture(tmp_path, "lines")
+    # Triangles are smaller than pixels, so that everything is dark.
+    seen = np.abs(plain - 0.5).max(axis=2) > 0.1
+    assert seen.any()
+    assert lines[seen].mean() < 0.02 * plain[seen].mean()

@@ -167,12 +167,12 @@ export class ViewerPage {
 
   /**
    * A finished picture, for tests and scripts: RGBA, sRGB-encoded, straight alpha, top row first.
-   * @param {{size: number, azimuth: number, elevation: number, field: boolean, channel: string, original?: boolean}} wanted
+   * @param {{size: number, azimuth: number, elevation: number, field: boolean, channel: string, wireframe?: boolean, original?: boolean}} wanted
    */
-  picture({ size, azimuth, elevation, field, channel, original = false }) {
+  picture({ size, azimuth, elevation, field, channel, wireframe = false, original = false }) {
     const camera = Object.assign(new Camera(), { azimuth, elevation });
     const pane = original ? this.other : this.pane;
-    return /** @type {Pane} */ (pane).renderer.render(camera, { field, channel, wireframe: false }, size, 3);
+    return /** @type {Pane} */ (pane).renderer.render(camera, { field, channel, wireframe }, size, 3);
   }
 }
 
