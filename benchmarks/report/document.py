@@ -2,10 +2,11 @@
 
     python -m benchmarks.report.document --bench build/bench
 
-The tables are of what `benchmarks.headline.main_job`, `benchmarks.headline.duel` and
-`benchmarks.studies.crossover` found. --bench keeps what `python -m benchmarks` left in that folder
-as benchmarks/results/bench.{json,csv} and docs/rate_distortion.png: of these come the delta rates
-and the sizes of the other codecs. Each table says at which commit its numbers were measured.
+The tables are of what `benchmarks.headline.main_job`, `benchmarks.headline.duel`,
+`benchmarks.studies.crossover`, `benchmarks.paper.rendered_views` and
+`benchmarks.paper.synthesized_views` found. --bench keeps what `python -m benchmarks` left in that
+folder as benchmarks/results/bench.{json,csv} and docs/rate_distortion.png: of these come the delta
+rates and the sizes of the other codecs. Each table says at which commit its numbers were measured.
 """
 
 from __future__ import annotations
@@ -21,6 +22,7 @@ from benchmarks.headline.duel import BETWEEN, DEMANDS, PRECISE
 from benchmarks.headline.duel import RESULTS as DUEL
 from benchmarks.headline.main_job import RESULTS
 from benchmarks.measuring.result_file import Record, commits_of, read_result, write_result
+from benchmarks.report import paper
 from benchmarks.report.markdown import table
 from benchmarks.studies.crossover import RESULTS as CROSSOVER
 from nispcodec.core.atomic_write import write_atomic
@@ -203,6 +205,7 @@ def written(text: str) -> str:
     """The document with its tables as the committed results have them."""
     text = replaced(text, BEGIN, END, measured())
     text = replaced(text, PEERS_BEGIN, PEERS_END, compared())
+    text = replaced(text, paper.BEGIN, paper.END, paper.views())
     return replaced(text, CROSSING_BEGIN, CROSSING_END, crossing())
 
 
