@@ -1,30 +1,40 @@
-"""Whole assets with their images, at equal rendered PSNR: ours against simplify + Draco.
+"""Whole assets with their images, at equal rendered PSNR: ours against simplify + Draco, gltfpack.
 
     nisp encode ASSET -o DIR/NAME.nisp --target-total SIZE
     python -m benchmarks.headline.totals --models DIR --assets ../shared/assets [--only spot]
 
-The rival has the same images, by the same codec and shares: each of its settings with as many bytes
-of images as it needs. Pictures from eight sides, by the same renderer, are compared with those of
-the original; ours are of the mesh that the written bytes decode to. Draco is counted without a
+Beside Draco are the same images as in our file: padded, AVIF, the same shares. Beside gltfpack are
+the same padded images as WebP, or as KTX2 (`benchmarks/codecs/ktx2.py`). Of every rival's settings
+and images those of the fewest bytes count whose pictures are as good as ours, which are of the mesh
+that the written bytes decode to: eight sides, the same renderer. Draco is counted without a
 container. None has normals: creases are found by angle in all of them, the original too.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import replace
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass, replace
+from functools import cached_property
 from pathlib import Path
 
 import click
 
 import nispcodec
 from benchmarks.assets.source import Source
-from benchmarks.codecs import Setting, simplified_draco
+from benchmarks.codecs import (
+    Setting,
+    codec,
+    gltfpack,
+    ktx2,
+    simplified_draco,
+    simplified_gltfpack,
+)
 from benchmarks.measuring.model_records import measured, models_options
 from benchmarks.measuring.result_file import Record
 from benchmarks.measuring.target import Asked, Target, asked_of_each
-from nispcodec.core.asset import TexturedMesh
-from nispcodec.encode.compact_images import compact_images
+from nispcodec.core.asset import Texture, TexturedMesh
+from nispcodec.core.texture import encoded_texture
+from nispcodec.encode.compact_images import CompactImage, compact_images
 from nispcodec.encode.config import TotalConfig
 from nispcodec.encode.image_shares import ImageShares
 from nispcodec.encode.total import Pictures
@@ -33,11 +43,146 @@ from nispcodec.render.remembered import RememberedScene
 from nispcodec.render.views import scene_of
 
 RESULTS = Path("benchmarks/results/totals.json")
-KEPT, BITS = (1.0, 0.7, 0.5, 0.25, 0.125), (11,)
+KEPT = (0.5, 0.25, 0.125, 0.0625)
+BITS, WHOLE_BITS = (10, 11), (9, 10, 11, 12, 13)
+"""Of positions and UVs of simplified meshes, and of all faces."""
 FEWEST = 150
-# Image bytes are tried in steps this large.
+# The weight of UVs that is best as a rule, and seams as they are.
+MOVING: Setting = {"uv_weight": 10.0, "seams": "protected"}
+# AVIF's bytes are tried in steps this large.
 STEP = 1.03
-TARGET = Target("share of Draco's total", ("share",), 0.9)
+WEBP = (1, 10, 20, 30, 40, 50, 60, 70, 80, 86, 92, 97)
+ETC1S = (1, 20, 40, 60, 80, 100)
+UASTC = (50,)
+TARGET = Target("share of Draco's total", ("draco", "share"), 0.9)
+
+
+@dataclass(frozen=True)
+class Geometry:
+    """A rival's mesh: its bytes, its scene, and what pictures of it with all of the images lose."""
+
+    codec: str
+    setting: Setting
+    bytes: int
+    scene: RememberedScene
+    error: float
+
+
+@dataclass(frozen=True)
+class Coded:
+    """Images of an asset as some codec has them: a name, their bytes, what pictures lose by them.
+
+    `error` is about what, on the original's surface.
+    """
+
+    name: str
+    bytes: int
+    error: float
+    textures: Callable[[], tuple[Texture, ...]]
+
+
+@dataclass(frozen=True)
+class Rivals:
+    """One asset, the squared error that rivals are to have, and our bytes."""
+
+    asset: Source
+    pictures: Pictures
+    wanted: float
+    total: int
+
+    @cached_property
+    def images(self) -> list[CompactImage]:
+        return compact_images(self.asset.mesh)
+
+    def draco(self) -> Record:
+        """With AVIF."""
+        grid = list(_settings(self.asset))
+        moving = [{**each, **MOVING} for each in grid if each["kept"] != 1.0]
+        ways = [("simplified_draco", each) for each in grid]
+        ways += [("simplified_update_draco", each) for each in moving]
+        return self.fewest(self.geometries(ways), self.avif())
+
+    def gltfpack(self, images: Iterable[Coded]) -> Record:
+        """With images of some other codec."""
+        return self.fewest(self._packed, images)
+
+    @cached_property
+    def _packed(self) -> list[Geometry]:
+        ways = [("gltfpack", each) for each in gltfpack.settings(self.asset, False)]
+        ways += [("simplified_gltfpack", e) for e in simplified_gltfpack.settings(self.asset, True)]
+        return self.geometries(way for way in ways if way[1]["compression"] == "cz")
+
+    def geometries(self, ways: Iterable[tuple[str, Setting]]) -> list[Geometry]:
+        """Those that alone leave no more error than there may be."""
+        found = [self.geometry(*way) for way in ways]
+        return [each for each in found if each.error < self.wanted]
+
+    def geometry(self, name: str, setting: Setting) -> Geometry:
+        coder = codec(name)
+        data = coder.encode(self.asset, setting)
+        scene = _scene(coder.decode(data, self.asset), self.pictures)
+        return Geometry(name, setting, len(data), scene, self.pictures.error(scene))
+
+    def fewest(self, geometries: list[Geometry], images: Iterable[Coded]) -> Record:
+        """The fewest bytes at which pictures lose no more than is wanted."""
+        coded = list(images)
+        pairs = [(g, i) for g in geometries for i in coded if g.error + i.error <= self.wanted]
+        for geometry, image in sorted(pairs, key=lambda pair: pair[0].bytes + pair[1].bytes):
+            scene = geometry.scene.with_textures(image.textures())
+            error = self.pictures.error(scene)
+            if error <= self.wanted:
+                used = geometry.bytes + image.bytes
+                return {
+                    "codec": geometry.codec,
+                    "setting": geometry.setting,
+                    "images": image.name,
+                    "geometry": geometry.bytes,
+                    "bytes": used,
+                    "psnr": psnr(error, 1.0),
+                    "share": self.total / used,
+                }
+        return {"bytes": None}
+
+    def avif(self) -> Iterator[Coded]:
+        """As in our file: the same sizes of colors and data for a sum of bytes."""
+        shares, most = ImageShares(self.images), 4.0 * self.total
+        shares.measure(TotalConfig().qualities, most, self.pictures.error_of_textures)
+        size = float(shares.least)
+        while size < most:
+
+            def textures(size: float = size) -> tuple[Texture, ...]:
+                return shares.fitted(size)
+
+            yield Coded("avif", round(size), shares.error(size), textures)
+            size *= STEP
+
+    def webp(self) -> Iterator[Coded]:
+        """At a quality for all of them."""
+        for quality in WEBP:
+            found = tuple(
+                encoded_texture(each.original.name, each.padded_pixels(), "webp", quality, False)
+                for each in self.images
+            )
+            size = sum(len(each.data) for each in found)
+            yield self._coded(f"webp {quality}", size, found)
+
+    def ktx2(self) -> Iterator[Coded]:
+        """At a quality of ETC1S for all of them, then as UASTC."""
+        for blocks, qualities in zip(ktx2.BLOCKS, (ETC1S, UASTC), strict=True):
+            for quality in qualities:
+                yield self._ktx2(blocks, quality)
+
+    def _ktx2(self, blocks: str, quality: int) -> Coded:
+        files, found = [], []
+        for each in self.images:
+            name = each.original.name
+            plain = encoded_texture(name, each.padded_pixels(), "png", 100, True)
+            files.append(ktx2.encode(plain, blocks, quality, each.is_data))
+            found.append(ktx2.decode(files[-1], name))
+        return self._coded(f"{blocks} {quality}", sum(map(len, files)), tuple(found))
+
+    def _coded(self, name: str, size: int, textures: tuple[Texture, ...]) -> Coded:
+        return Coded(name, size, self.pictures.error_of_textures(textures), lambda: textures)
 
 
 def asked(results: Record) -> Iterator[Asked]:
@@ -46,65 +191,34 @@ def asked(results: Record) -> Iterator[Asked]:
 
 
 def measure(path: Path, source: Path) -> Record:
-    """Our file, and the fewest bytes of the rival at its PSNR; None where it has no such."""
+    """Our file, and the fewest bytes of each rival at its PSNR; None where it reaches none such."""
     asset, model = Source(source), nispcodec.load(path)
     pictures = Pictures(replace(asset.mesh, creases=None), TotalConfig())
-    ours = pictures.error(_scene(model.to_mesh(), pictures))
+    error = pictures.error(_scene(model.to_mesh(), pictures))
     images = sum(len(each.data) for each in model.document.textures)
     total = path.stat().st_size
-    rival = draco(asset, pictures, ours, total)
+    rivals = Rivals(asset, pictures, error, total)
     return {
         "preset": model.document.info["preset"],
         "bytes": total,
+        "held_as": "networks" if model.document.field else "triangles",
         "geometry_share": (total - images) / total,
-        "psnr": psnr(ours, 1.0),
-        "rival": rival,
-        "share": total / rival["bytes"] if rival["bytes"] else None,
+        "psnr": psnr(error, 1.0),
+        "draco": rivals.draco(),
+        "gltfpack_webp": rivals.gltfpack(rivals.webp()),
+        "gltfpack_ktx2": rivals.gltfpack(rivals.ktx2()),
     }
 
 
-def draco(asset: Source, pictures: Pictures, wanted: float, total: int) -> Record:
-    """The setting of the fewest bytes whose pictures, drawn with its images, are as good."""
-    shares = ImageShares(compact_images(asset.mesh))
-    shares.measure(TotalConfig().qualities, 4.0 * total, pictures.error_of_textures)
-    found: Record = {"bytes": None}
-    for setting in _settings(asset):
-        data = simplified_draco.encode(asset, setting)
-        scene = _scene(simplified_draco.decode(data, asset), pictures)
-        error = pictures.error(scene)
-        size = _images_needed(shares, wanted - error, 4.0 * total)
-        while size and (textures := shares.fitted(size)):
-            used = len(data) + sum(len(each.data) for each in textures)
-            if found["bytes"] and used >= found["bytes"]:
-                break
-            reached = pictures.error(scene.with_textures(textures))
-            if reached <= wanted:
-                found = {"setting": setting, "geometry": len(data), "bytes": used}
-                found["psnr"] = psnr(reached, 1.0)
-                break
-            size = STEP * size if size < 4 * total else 0.0
-    return found
-
-
-def _settings(asset: Source) -> list[Setting]:
+def _settings(asset: Source) -> Iterator[Setting]:
+    """Of Draco: all faces, and fewer."""
     surfaces = ("all", "outer") if asset.hidden_share > simplified_draco.NOTABLE else ("all",)
     shares = [kept for kept in KEPT if kept * len(asset.mesh.faces) > FEWEST]
-    return [
-        {"surface": surface, "kept": kept, "qp": bits, "qt": bits}
-        for surface in surfaces
-        for kept in shares
-        for bits in BITS
-    ]
-
-
-def _images_needed(shares: ImageShares, error: float, most: float) -> float:
-    """The fewest bytes of images that are expected to lose no more; 0 where none does."""
-    size = float(shares.least)
-    while size <= most:
-        if shares.error(size) <= error:
-            return size
-        size *= STEP
-    return 0.0
+    sizes = [(1.0, bits) for bits in WHOLE_BITS]
+    sizes += [(kept, bits) for kept in shares for bits in BITS]
+    for surface in surfaces:
+        for kept, bits in sizes:
+            yield {"surface": surface, "kept": kept, "qp": bits, "qt": bits}
 
 
 def _scene(mesh: TexturedMesh, pictures: Pictures) -> RememberedScene:
@@ -114,11 +228,12 @@ def _scene(mesh: TexturedMesh, pictures: Pictures) -> RememberedScene:
 @click.command()
 @models_options(RESULTS)
 def main(models: Path, assets: Path, only: tuple[str, ...], output: Path) -> None:
-    """Measure every NAME.nisp in MODELS and print our share of the rival's bytes."""
+    """Measure every NAME.nisp in MODELS and print our share of each rival's bytes."""
     records = measured(models, assets, only, output, measure)
     for name, record in records.items():
-        found = f"{record['bytes']:>9,} B {record['psnr']:.2f} dB, rival {record['rival']}"
-        click.echo(f"{name:<24}{found}")
+        click.echo(f"{name:<24}{record['bytes']:>9,} B {record['psnr']:.2f} dB")
+        for rival in ("draco", "gltfpack_webp", "gltfpack_ktx2"):
+            click.echo(f"    {rival:<20}{record[rival]}")
     for each in asked({"assets": records}):
         click.echo(each.line())
 

@@ -43,7 +43,7 @@ class CompactImage:
         key = quality, tune or self._config.tune
         if key not in self._coded:
             found = encoded_texture(
-                self.original.name, self._best_padding(), "avif", quality, True, key[1]
+                self.original.name, self.padded_pixels(), "avif", quality, True, key[1]
             )
             smaller = len(found.data) < len(self.original.data)
             self._coded[key] = found if smaller else self.original
@@ -65,7 +65,7 @@ class CompactImage:
         apart = (image_bytes(coded)[used].astype(np.float32) - self._pixels[used]) / 255
         return float(np.sqrt(np.square(apart).sum(axis=-1).mean()))
 
-    def _best_padding(self) -> Uint8Array:
+    def padded_pixels(self) -> Uint8Array:
         """The pixels padded in the way that takes fewer bytes: smooth colors, or the nearest."""
         if self._used is None:
             return self._pixels

@@ -1,9 +1,11 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
 
+import numpy as np
 import pytest
 from nispcodec_cli.parts import in_a_line, with_errors
 
@@ -39,6 +41,31 @@ def test_what_the_encode_warns_of_is_said_and_reported(
     assert result.exit_code == 0, result.output
     assert "nisp: warning: mug: turned faces" in result.stderr
     assert json.loads(result.stdout)["warnings"][-1] == "mug: turned faces"
+
+
+@pytest.mark.parametrize(
+    ("options", "side", "said"),
+    [
+        ((), 200, True),
+        ((), 2, False),
+        (("--target-total", "90kB"), 200, False),
+        (("--texture-format", "webp"), 200, False),
+    ],
+)
+def test_textures_that_are_most_of_a_file_are_told_of(
+    encoder: Encoder,
+    mesh: Path,
+    tmp_path: Path,
+    options: tuple[str, ...],
+    side: int,
+    said: bool,
+) -> None:
+    noise = np.random.default_rng(0).integers(0, 256, (side, side, 3)).astype(np.uint8)
+    encoder(replace(tiny.document(), textures=(tiny.png(noise),)))
+    out = tmp_path / "out.nisp"
+    result = nisp("encode", mesh, "-o", out, "--quiet", *options)
+    assert result.exit_code == 0, result.output
+    assert ("of the file: --texture-format auto" in result.stdout) is said
 
 
 @pytest.mark.parametrize(

@@ -13,6 +13,7 @@ from nispcodec.core.asset import Material, TexturedMesh, TextureMap
 from nispcodec.core.document import Document
 from nispcodec.core.errors import NispError
 from nispcodec.core.progress import Listener, Progress, silent
+from nispcodec.core.texture import image_size
 from nispcodec.encode.choice import Loss
 from nispcodec.encode.config import EncodeConfig, TotalConfig
 from nispcodec.encode.recipe import encode
@@ -20,7 +21,7 @@ from nispcodec.encode.total import encode_to_total
 from nispcodec.format import pack
 from nispcodec.model import NispModel
 from tests import tiny
-from tests.encode.test_compact_images import noisy
+from tests.encode.test_compact_images import SIDE, noisy
 from tests.geometry.shapes import box_asset
 
 SMALL = TotalConfig(views=2, size=48, qualities=(1, 50, 100), least_geometry=100)
@@ -82,6 +83,7 @@ def test_a_file_takes_the_total_and_hardly_less(total: int) -> None:
     document, geometry = encoded(total)
     assert 0.93 * total <= len(pack(document)) <= total
     assert document.materials == asset().materials
+    assert [image_size(each) for each in document.textures] == [(SIDE, SIDE)] * 2
     assert len(geometry.asked) == 1
 
 
