@@ -15,6 +15,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
+from itertools import takewhile
 from pathlib import Path
 
 import click
@@ -51,9 +52,11 @@ FEWEST = 150
 MOVING: Setting = {"uv_weight": 10.0, "seams": "protected"}
 # AVIF's bytes are tried in steps this large.
 STEP = 1.03
-WEBP = (1, 10, 20, 30, 40, 50, 60, 70, 80, 86, 92, 97)
-ETC1S = (1, 20, 40, 60, 80, 100)
-UASTC = (50,)
+# From the best down, as long as pictures lose little enough.
+WEBP = (98, 92, 85, 75, 60, 45, 30, 15, 1)
+UASTC, ETC1S = (50,), (100, 80, 60, 40, 20, 1)
+# A mesh that loses so many times too much at a glance, on a few small pictures, is not looked at.
+GLANCE, HOPELESS = replace(TotalConfig(), views=2, size=128), 3.0
 TARGET = Target("share of Draco's total", ("draco", "share"), 0.9)
 
 
@@ -115,13 +118,20 @@ class Rivals:
     def geometries(self, ways: Iterable[tuple[str, Setting]]) -> list[Geometry]:
         """Those that alone leave no more error than there may be."""
         found = [self.geometry(*way) for way in ways]
-        return [each for each in found if each.error < self.wanted]
+        return [each for each in found if each and each.error < self.wanted]
 
-    def geometry(self, name: str, setting: Setting) -> Geometry:
+    def geometry(self, name: str, setting: Setting) -> Geometry | None:
+        """A rival's mesh, unless it is hopeless."""
         coder = codec(name)
         data = coder.encode(self.asset, setting)
         scene = _scene(coder.decode(data, self.asset), self.pictures)
+        if self._glance.error(scene) > HOPELESS * self.wanted:
+            return None
         return Geometry(name, setting, len(data), scene, self.pictures.error(scene))
+
+    @cached_property
+    def _glance(self) -> Pictures:
+        return _pictures(self.asset, GLANCE)
 
     def fewest(self, geometries: list[Geometry], images: Iterable[Coded]) -> Record:
         """The fewest bytes at which pictures lose no more than is wanted."""
@@ -158,19 +168,22 @@ class Rivals:
 
     def webp(self) -> Iterator[Coded]:
         """At a quality for all of them."""
-        for quality in WEBP:
-            found = tuple(
-                encoded_texture(each.original.name, each.padded_pixels(), "webp", quality, False)
-                for each in self.images
-            )
-            size = sum(len(each.data) for each in found)
-            yield self._coded(f"webp {quality}", size, found)
+        return self._good_enough(self._webp(quality) for quality in WEBP)
 
     def ktx2(self) -> Iterator[Coded]:
-        """At a quality of ETC1S for all of them, then as UASTC."""
-        for blocks, qualities in zip(ktx2.BLOCKS, (ETC1S, UASTC), strict=True):
-            for quality in qualities:
-                yield self._ktx2(blocks, quality)
+        """As UASTC, and at a quality of ETC1S for all of them."""
+        yield from self._good_enough(self._ktx2("uastc", quality) for quality in UASTC)
+        yield from self._good_enough(self._ktx2("etc1s", quality) for quality in ETC1S)
+
+    def _good_enough(self, coded: Iterable[Coded]) -> Iterator[Coded]:
+        return takewhile(lambda each: each.error < self.wanted, coded)
+
+    def _webp(self, quality: int) -> Coded:
+        found = tuple(
+            encoded_texture(each.original.name, each.padded_pixels(), "webp", quality, False)
+            for each in self.images
+        )
+        return self._coded(f"webp {quality}", sum(len(each.data) for each in found), found)
 
     def _ktx2(self, blocks: str, quality: int) -> Coded:
         files, found = [], []
@@ -193,7 +206,7 @@ def asked(results: Record) -> Iterator[Asked]:
 def measure(path: Path, source: Path) -> Record:
     """Our file, and the fewest bytes of each rival at its PSNR; None where it reaches none such."""
     asset, model = Source(source), nispcodec.load(path)
-    pictures = Pictures(replace(asset.mesh, creases=None), TotalConfig())
+    pictures = _pictures(asset, TotalConfig())
     error = pictures.error(_scene(model.to_mesh(), pictures))
     images = sum(len(each.data) for each in model.document.textures)
     total = path.stat().st_size
@@ -219,6 +232,10 @@ def _settings(asset: Source) -> Iterator[Setting]:
     for surface in surfaces:
         for kept, bits in sizes:
             yield {"surface": surface, "kept": kept, "qp": bits, "qt": bits}
+
+
+def _pictures(asset: Source, tuning: TotalConfig) -> Pictures:
+    return Pictures(replace(asset.mesh, creases=None), tuning)
 
 
 def _scene(mesh: TexturedMesh, pictures: Pictures) -> RememberedScene:
