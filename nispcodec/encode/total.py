@@ -118,7 +118,7 @@ class _Totals:
     def split(self, size: float, progress: Listener) -> Split:
         """A geometry of `size` bytes; 0: as the preset has it, or as large as there is room."""
         found, room = self._document(size, progress), self.total - self.shares.least
-        if not size and self._own(found) > self.tuning.filled * room:
+        if not size and self._own(found) > room:
             found = self._document(self.tuning.filled * room, progress)
         if self._own(found) > room:
             raise NispError(
