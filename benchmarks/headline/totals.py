@@ -14,8 +14,9 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, partial
 from itertools import takewhile
+from math import inf
 from pathlib import Path
 
 import click
@@ -55,6 +56,7 @@ STEP = 1.03
 # From the best down, as long as pictures lose little enough.
 WEBP = (98, 92, 85, 75, 60, 45, 30, 15, 1)
 UASTC, ETC1S = (50,), (100, 80, 60, 40, 20, 1)
+LEAST_TAKEN = 0.9
 # A mesh that loses so many times too much at a glance, on a few small pictures, is not looked at.
 GLANCE, HOPELESS = replace(TotalConfig(), views=2, size=128), 3.0
 TARGET = Target("share of Draco's total", ("draco", "share"), 0.9)
@@ -75,13 +77,14 @@ class Geometry:
 class Coded:
     """Images of an asset as some codec has them: a name, their bytes, what pictures lose by them.
 
-    `error` is about what, on the original's surface.
+    Both are expected, the error on the original's surface; `made` gives the bytes that are taken,
+    LEAST_TAKEN of those expected or more, and the textures.
     """
 
     name: str
     bytes: int
     error: float
-    textures: Callable[[], tuple[Texture, ...]]
+    made: Callable[[], tuple[int, tuple[Texture, ...]]]
 
 
 @dataclass(frozen=True)
@@ -135,23 +138,26 @@ class Rivals:
 
     def fewest(self, geometries: list[Geometry], images: Iterable[Coded]) -> Record:
         """The fewest bytes at which pictures lose no more than is wanted."""
-        coded = list(images)
+        coded, best = list(images), inf
+        found: Record = {"bytes": None}
         pairs = [(g, i) for g in geometries for i in coded if g.error + i.error <= self.wanted]
         for geometry, image in sorted(pairs, key=lambda pair: pair[0].bytes + pair[1].bytes):
-            scene = geometry.scene.with_textures(image.textures())
-            error = self.pictures.error(scene)
-            if error <= self.wanted:
-                used = geometry.bytes + image.bytes
-                return {
+            if geometry.bytes + LEAST_TAKEN * image.bytes >= best:
+                continue
+            size, textures = image.made()
+            error = self.pictures.error(geometry.scene.with_textures(textures))
+            if error <= self.wanted and geometry.bytes + size < best:
+                best = geometry.bytes + size
+                found = {
                     "codec": geometry.codec,
                     "setting": geometry.setting,
                     "images": image.name,
                     "geometry": geometry.bytes,
-                    "bytes": used,
+                    "bytes": best,
                     "psnr": psnr(error, 1.0),
-                    "share": self.total / used,
+                    "share": self.total / best,
                 }
-        return {"bytes": None}
+        return found
 
     def avif(self) -> Iterator[Coded]:
         """As in our file: the same sizes of colors and data for a sum of bytes."""
@@ -159,11 +165,7 @@ class Rivals:
         shares.measure(TotalConfig().qualities, most, self.pictures.error_of_textures)
         size = float(shares.least)
         while size < most:
-
-            def textures(size: float = size) -> tuple[Texture, ...]:
-                return shares.fitted(size)
-
-            yield Coded("avif", round(size), shares.error(size), textures)
+            yield Coded("avif", round(size), shares.error(size), partial(_fitted, shares, size))
             size *= STEP
 
     def webp(self) -> Iterator[Coded]:
@@ -195,7 +197,8 @@ class Rivals:
         return self._coded(f"{blocks} {quality}", sum(map(len, files)), tuple(found))
 
     def _coded(self, name: str, size: int, textures: tuple[Texture, ...]) -> Coded:
-        return Coded(name, size, self.pictures.error_of_textures(textures), lambda: textures)
+        error = self.pictures.error_of_textures(textures)
+        return Coded(name, size, error, lambda: (size, textures))
 
 
 def asked(results: Record) -> Iterator[Asked]:
@@ -232,6 +235,11 @@ def _settings(asset: Source) -> Iterator[Setting]:
     for surface in surfaces:
         for kept, bits in sizes:
             yield {"surface": surface, "kept": kept, "qp": bits, "qt": bits}
+
+
+def _fitted(shares: ImageShares, size: float) -> tuple[int, tuple[Texture, ...]]:
+    textures = shares.fitted(size)
+    return sum(len(each.data) for each in textures), textures
 
 
 def _pictures(asset: Source, tuning: TotalConfig) -> Pictures:

@@ -25,9 +25,9 @@ def geometry(size: int, error: float) -> Geometry:
     return Geometry("draco", {"qp": size}, size, scene, error)
 
 
-def images(size: int, error: float, really: float | None = None) -> Coded:
+def images(size: int, error: float, really: float | None = None, taken: int | None = None) -> Coded:
     lost: Any = (error if really is None else really,)
-    return Coded(f"avif {size}", size, error, lambda: lost)
+    return Coded(f"avif {size}", size, error, lambda: (taken or size, lost))
 
 
 def fewest(geometries: list[Geometry], coded: list[Coded], wanted: float = 10.0) -> Any:
@@ -49,3 +49,8 @@ def test_what_was_only_expected_to_be_good_enough_does_not_count() -> None:
 
 def test_a_rival_that_is_never_as_good_has_no_bytes() -> None:
     assert fewest([geometry(100, 1)], [images(400, 20)]) == {"bytes": None}
+
+
+def test_bytes_are_those_that_images_take() -> None:
+    found = fewest([geometry(100, 1)], [images(400, 8), images(410, 5, taken=380)])
+    assert found["bytes"] == 480
