@@ -258,6 +258,19 @@ def test_gltf_has_png_for_avif(mesh: TexturedMesh, tmp_path: Path) -> None:
     assert Image.open(tmp_path / "o_0.png").format == "PNG"
 
 
+def test_png_made_for_avif_takes_no_other_image_of_its_name(
+    mesh: TexturedMesh, tmp_path: Path
+) -> None:
+    data = BytesIO()
+    Image.fromarray(np.full((4, 4, 3), 200, np.uint8)).save(data, "AVIF")
+    images = (tiny.png(PIXELS, "wood.png"), Texture("wood.avif", data.getvalue(), "image/avif"))
+    again = load_mesh(write_mesh(replace(mesh, textures=images), tmp_path / "o.gltf")[-1])
+    wood = next(each for each in again.materials if each.maps)
+    color, normal = (again.textures[each.texture].data for each in wood.maps.values())
+    assert color == images[0].data
+    assert abs(int(np.asarray(Image.open(BytesIO(normal)))[2, 2, 0]) - 200) < 8
+
+
 def test_obj_text(mesh: TexturedMesh) -> None:
     files = obj_files(mesh, "out")
     assert set(files) == {"out.obj", "out.mtl", "out_a_b.png", "out_2_a_b.png"}

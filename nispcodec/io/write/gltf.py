@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+from dataclasses import replace
 
 from nispcodec.core.arrays import Float32Array
 from nispcodec.core.asset import TexturedMesh
@@ -24,7 +25,8 @@ def gltf_files(
     The document and its colors are those of `gltf_tree`. `compress` is one of
     `gltf_compression.COMPRESSIONS`, or None.
     """
-    names = [_as_png(name) for name in image_names(stem, mesh.textures)]
+    # Renamed before they are told apart: a.avif is not to take the place of a.png.
+    names = image_names(stem, [replace(each, name=_as_png(each.name)) for each in mesh.textures])
     tree, binary = gltf_tree(mesh, colors, names)
     if compress:
         tree, binary = compressed(tree, binary, compress)
