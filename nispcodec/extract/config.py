@@ -21,6 +21,7 @@ class ResolutionConfig:
     bytes_per_face  of memory that extraction takes at its peak: 260 to 300 were seen, and the count
                     of faces may be low by a quarter
     highest          cells of anything nobody asked for: memory grows with the square
+    wall_samples     blocks of the surface, at least, that thin walls are looked for in
     newton_steps     that bring a point near the surface onto it, before walls are measured
     on_surface       a field smaller than this is at the surface
     """
@@ -32,6 +33,7 @@ class ResolutionConfig:
     faces_per_block: float = 6.6
     bytes_per_face: int = 400
     highest: int = 2048
+    wall_samples: int = 20_000
     newton_steps: int = 3
     on_surface: float = 1e-3
 

@@ -104,7 +104,8 @@ def default_resolution(
 ) -> int:
     """256; for thin walls up to 512, as triangles allow; one cell for sheets' half thickness."""
     points, size = near_surface(network, config.least)
-    thin = thin_share(network, points, size, 2 * CUBE / config.least, config)
+    some = points[:: max(1, len(points) // config.wall_samples)]
+    thin = thin_share(network, some, size, 2 * CUBE / config.least, config)
     blocks = config.faces / (config.faces_per_block * max(len(points), 1))
     affordable = min(max(config.least, int(config.least * np.sqrt(blocks))), config.most)
     cells = affordable if thin > config.thin_share else config.least
