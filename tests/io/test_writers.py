@@ -277,8 +277,10 @@ def test_obj_text(mesh: TexturedMesh) -> None:
     assert files["out_a_b.png"] == mesh.textures[0].data
     lines = files["out.obj"].decode().splitlines()
     assert lines[0] == "mtllib out.mtl"
-    assert "f 1/1 3/2 2/3" in lines
-    assert "f 2 3 4" in lines
+    assert "f 1/1/1 3/2/3 2/3/2" in lines
+    assert "f 2//2 3//3 4//4" in lines
+    assert lines.count("s 1") == 1
+    assert sum(line.startswith("vn ") for line in lines) == 4
     assert "vt 1.5 -0.5" in lines
     used = [line.split()[1] for line in lines if line.startswith("usemtl")]
     mtl = files["out.mtl"].decode().splitlines()

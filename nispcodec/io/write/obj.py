@@ -41,19 +41,18 @@ def _obj(mesh: TexturedMesh, library: str, names: list[str]) -> str:
     parts = [f"mtllib {library}\no {plain(mesh.name)}\n"]
     parts.append(_rows(f"v {_decimals(mesh)}\n", mesh.positions))
     parts.append(_rows("vt %.7g %.7g\n", mesh.uvs))
-    corners: list[AnyArray] = [mesh.faces]
-    pattern, plain_pattern = "%d/%d", "%d"
-    if mesh.creases is not None:
-        normals = shading_normals(mesh)
-        parts.append(_rows("vn %.4g %.4g %.4g\n", normals.rows))
-        corners, pattern, plain_pattern = [mesh.faces, normals.faces], "%d/%d/%d", "%d//%d"
+    normals = shading_normals(mesh)
+    parts.append(_rows("vn %.4g %.4g %.4g\n", normals.rows))
+    if mesh.creases is None:
+        # For readers that pass over normals; a smoothing group has no words for single creases.
+        parts.append("s 1\n")
+    dressed: list[AnyArray] = [mesh.faces, mesh.uv_faces, normals.faces]
     for material in np.unique(mesh.face_materials).tolist():
         parts.append(f"usemtl {names[material]}\n")
         chosen = mesh.face_materials == material
         with_uv, without = chosen & mesh.has_uv, chosen & ~mesh.has_uv
-        dressed = [corners[0], mesh.uv_faces, *corners[1:]]
-        parts.append(_faces(pattern, [each[with_uv] for each in dressed]))
-        parts.append(_faces(plain_pattern, [each[without] for each in corners]))
+        parts.append(_faces("%d/%d/%d", [each[with_uv] for each in dressed]))
+        parts.append(_faces("%d//%d", [each[without] for each in dressed[::2]]))
     return "".join(parts)
 
 

@@ -45,9 +45,8 @@ def _vertex_rows(mesh: TexturedMesh, vertices: Vertices, colors: Float32Array | 
     else:
         fields += [(name, "u1") for name in ("red", "green", "blue", "alpha")]
         values += list(np.rint(colors[vertices.sources] * 255).T)
-    if mesh.creases is not None:
-        fields += [(name, "<f4") for name in ("nx", "ny", "nz")]
-        values += list(vertices.normals.T)
+    fields += [(name, "<f4") for name in ("nx", "ny", "nz")]
+    values += list(vertices.normals.T)
     rows = np.empty(len(vertices.positions), fields)
     for (name, _), column in zip(fields, values, strict=True):
         rows[name] = column
