@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from dataclasses import dataclass, replace
+from itertools import pairwise
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -153,8 +154,9 @@ def _told(levels: list[Level], colors: bool, seconds: float, simple: bool, as_js
 
     first = levels[0].mesh
     warnings = [*first.warnings, *(() if colors else losses(first, levels[0].files[-1]))]
-    warn(warnings)
     finest, *coarser = [each.report() for each in levels]
+    warnings += _stuck([finest, *coarser])
+    warn(warnings)
     if as_json:
         more = {"levels": coarser} if coarser else {}
         print_json({**finest, "warnings": warnings, "seconds": round(seconds, 1), **more})
@@ -165,6 +167,16 @@ def _told(levels: list[Level], colors: bool, seconds: float, simple: bool, as_js
         print_written(each.files, "  ")
     if simple:
         click.echo(FEWER)
+
+
+def _stuck(reports: list[dict[str, Any]]) -> list[str]:
+    """A sentence where a level has as many triangles as the one before; [] where none has."""
+    alike = [(more, less) for more, less in pairwise(reports) if less["faces"] >= more["faces"]]
+    return [
+        f"{less['file']}: has no fewer triangles than {Path(more['file']).name}, as they are the "
+        "fewest that its bodies take: ask for fewer --lods"
+        for more, less in alike[:1]
+    ]
 
 
 def _planned(model: NispModel, paths: list[Path], colors: bool, rebake: bool) -> list[Path]:

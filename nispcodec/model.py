@@ -145,9 +145,10 @@ class NispModel:
         """The surface in `levels` of detail from one extraction, the finest first: `to_mesh`'s.
 
         Each has about a quarter of the triangles of the one before: as many on a pixel from twice
-        as far. Other arguments are those of `to_mesh`. Triangles that the file holds are simplified
-        as the encoder does it, which needs `pip install 'nispcodec[encode]'`. Raises NispError
-        without, QueryError for no level.
+        as far. Seams and bodies take some: a level that would have no fewer is the one before.
+        Other arguments are those of `to_mesh`. Triangles that the file holds are simplified as the
+        encoder does it, which needs `pip install 'nispcodec[encode]'`. Raises NispError without,
+        QueryError for no level.
         """
         from nispcodec.extract.meshing import textured_levels
 

@@ -186,9 +186,11 @@ class LevelConfig:
 
     share  of a level's triangles that the next one has: from twice as far, a surface covers a
            quarter of the pixels
+    least  triangles of any level: fewer enclose nothing, and one is half a sheet
     """
 
     share: float = 0.25
+    least: int = 4
 
 
 @dataclass(frozen=True)

@@ -165,7 +165,9 @@ def _field_levels(
     else:
         found = [_with_at_most(field, surface, faces, config)]
     for count in _counts(len(found[0][0].faces), levels, config.levels):
-        found.append(_with_at_most(field, surface, count, config))
+        fewer = _with_at_most(field, surface, count, config)
+        # Seams take triangles of their own: there is a least number of them.
+        found.append(min(found[-1], fewer, key=lambda cut: len(cut[0].faces)))
     dressed = (_dressed(document, field, *_opened(field, *cut, config)) for cut in found)
     return list(dressed), report
 
@@ -180,7 +182,7 @@ def _part_levels(
 
 def _counts(faces: int, levels: int, config: LevelConfig) -> list[int]:
     """How many faces each level after the first is to have."""
-    return [max(round(faces * config.share**level), 1) for level in range(1, levels)]
+    return [max(round(faces * config.share**level), config.least) for level in range(1, levels)]
 
 
 def _cut(

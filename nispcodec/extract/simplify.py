@@ -21,11 +21,13 @@ def simplified(
 ) -> Surface:
     """The surface with about `faces` triangles, or as it is when it has no more than that.
 
-    Its vertices lie where they serve the triangles best, no longer on the zero set.
+    Its vertices lie where they serve the triangles best, no longer on the zero set. There are more
+    triangles where so few would leave nothing.
     """
     if len(surface.faces) <= faces:
         return surface
-    return _finished(network, surface, _collapsed(surface, faces, config), config)
+    found = _finished(network, surface, _collapsed(surface, faces, config), config)
+    return found if len(found.faces) else simplified(network, surface, 2 * max(faces, 1), config)
 
 
 def _collapsed(surface: Surface, faces: int, config: SimplifyConfig) -> Surface:

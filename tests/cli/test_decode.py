@@ -85,6 +85,14 @@ def test_lods(model: Path, tmp_path: Path) -> None:
     refused(again, "expected no file of this name, found one")
 
 
+def test_levels_that_are_no_coarser_are_told_once(model: Path, tmp_path: Path) -> None:
+    options = ("--resolution", 16, "--lods", 8)
+    told = done("decode", model, "-o", tmp_path / "out.glb", *options).stderr
+    assert told.count("has no fewer triangles than out.lod") == 1
+    few = done("decode", model, "-o", tmp_path / "few.glb", "--resolution", 48, "--lods", 2).stderr
+    assert "no fewer" not in few
+
+
 def test_contradictions_are_refused(model: Path, tmp_path: Path) -> None:
     for options in (
         ("--colors", "--rebake"),

@@ -11,8 +11,10 @@ import trimesh
 
 from nispcodec.core.document import Document
 from nispcodec.core.errors import NispError, QueryError
+from nispcodec.core.network import Network
 from nispcodec.extract.isosurface import extract
 from nispcodec.extract.meshing import textured_levels
+from nispcodec.geometry.triangles import area
 from nispcodec.model import NispModel
 from tests import tiny
 from tests.extract.surfaces import assert_closed
@@ -64,10 +66,30 @@ def test_there_is_one_extraction(monkeypatch: pytest.MonkeyPatch) -> None:
     asked.assert_called_once()
 
 
+def test_no_level_is_a_part_of_a_sheet(simplifier: None) -> None:
+    places = np.indices((5, 5)).reshape(2, -1).T / 4 - 0.5
+    first = np.arange(20).reshape(4, 5)[:, :4].reshape(-1, 1)
+    faces = np.concatenate([first + np.array([0, 5, 6]), first + np.array([0, 6, 1])])
+    part = part_of(np.column_stack([places, np.zeros(25)])[faces])
+    meshes, _ = textured_levels(replace(tiny.document(), field=None, meshes=(part,)), 5)
+    areas = [area(mesh.corners).sum() for mesh in meshes]
+    np.testing.assert_allclose(areas, areas[0], rtol=0.01)
+
+
 def test_levels_of_a_closed_surface_are_closed(simplifier: None) -> None:
     for document in (tiny.document(tiny.sphere()), ball()):
         for mesh in textured_levels(document, 3, 48)[0]:
             assert_closed(mesh.faces)
+
+
+@pytest.mark.parametrize("network", [tiny.octahedron(), tiny.sphere()])
+def test_there_is_a_coarsest_level(network: Network) -> None:
+    meshes, _ = textured_levels(tiny.document(network), 8, 48)
+    faces = [len(mesh.faces) for mesh in meshes]
+    assert faces == sorted(faces, reverse=True)
+    for mesh in meshes:
+        size, whole = (np.ptp(each.positions, axis=0) for each in (mesh, meshes[0]))
+        assert (size > 0.5 * whole).all()
 
 
 def test_levels_keep_what_is_hard(simplifier: None) -> None:
