@@ -63,7 +63,7 @@ def why(document: Document) -> str:
     if not isinstance(other, int | float) or not other:
         return held
     rest = "triangles" if document.field else "networks"
-    told = f"{held}; as {rest} about {number(round(other))} bytes at the same distance"
+    told = f"{held}; as {rest} about {number(round(other))} bytes"
     made_up = document.info.get("other_form_made_up_share")
     if not isinstance(made_up, int | float) or not made_up:
         return told

@@ -15,7 +15,9 @@ from nispcodec_cli import main as nisp
 
 import nispcodec
 from nispcodec.format.codings.registry import CODINGS
+from nispcodec.io.save import mesh_paths
 from nispcodec.model import NispModel
+from nispcodec.procedural.mug import sample_asset
 from tests import tiny
 from tests.docs.pages import PAGES, ROOT, commands, links, prose, sentences
 
@@ -56,6 +58,14 @@ def test_commands_and_their_options_are_there(page: Path) -> None:
         known = {each for option in nisp.get_command(context, name).params for each in option.opts}
         asked = {each for each in rest if re.fullmatch(r"--?[a-z][a-z-]*", each)}
         assert asked <= {*known, "--help"}, line
+
+
+def test_the_quickstart_takes_images_that_its_sample_has() -> None:
+    asked = re.findall(r"=textures/(\S+)", (ROOT / "docs" / "quickstart.md").read_text("utf-8"))
+    sample = sample_asset()
+    written = mesh_paths(Path("sample.obj"), sample.materials, sample.textures)
+    assert asked
+    assert set(asked) <= {path.name for path in written}
 
 
 def test_options_are_what_help_says() -> None:

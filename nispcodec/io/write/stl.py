@@ -17,7 +17,7 @@ def stl_bytes(mesh: TexturedMesh, colors: Float32Array | None = None) -> bytes:
     Raises MeshError for colors.
     """
     if colors is not None:
-        raise MeshError("STL holds no colors: expected .glb, .ply or .obj")
+        raise MeshError("STL holds no colors: expected .glb, .gltf, .obj, .ply or .usdz")
     a, b, c = mesh.corners.transpose(1, 0, 2)
     normals = np.cross(b - a, c - a)
     lengths = np.linalg.norm(normals, axis=1, keepdims=True)
