@@ -139,6 +139,11 @@ RESULTS = (
         ("nispcodec/extract", "nispcodec/io/write"),
     ),
     CommittedResult(
+        "environment_size.json",
+        "benchmarks.studies.environment_size",
+        ("pyproject.toml", "constraints.txt", "setup.py"),
+    ),
+    CommittedResult(
         "valid_gltf.json",
         "benchmarks.studies.valid_gltf",
         ("nispcodec/io/write", "nispcodec/extract"),
