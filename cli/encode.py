@@ -239,7 +239,7 @@ def _hint(parts: Mapping[str, int], config: EncodeConfig) -> str:
         return ""
     return (
         f"textures are {share:.0%} of the file: --texture-format auto codes them as AVIF, "
-        "--target-total 100kB to a size"
+        "--target-total SIZE to a size"
     )
 
 

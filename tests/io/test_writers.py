@@ -249,22 +249,30 @@ def test_gltf_says_what_a_glb_says(mesh: TexturedMesh, tmp_path: Path) -> None:
     assert {each["type"] for each in tree["accessors"]} == {"VEC2", "VEC3", "VEC4", "SCALAR"}
 
 
-def test_gltf_has_png_for_avif(mesh: TexturedMesh, tmp_path: Path) -> None:
+@pytest.mark.parametrize(
+    ("suffix", "others"),
+    [(".gltf", ["o_1.png", "o.bin"]), (".obj", ["o_1.png", "o.mtl"]), (".ply", [])],
+)
+def test_images_in_files_are_png_for_avif(
+    mesh: TexturedMesh, tmp_path: Path, suffix: str, others: list[str]
+) -> None:
     data = BytesIO()
     Image.fromarray(PIXELS).save(data, "AVIF")
     avif = tuple(Texture(f"{k}.AVIF", data.getvalue(), "image/avif") for k in range(2))
-    names = [path.name for path in write_mesh(replace(mesh, textures=avif), tmp_path / "o.gltf")]
-    assert names == ["o_0.png", "o_1.png", "o.bin", "o.gltf"]
+    written = write_mesh(replace(mesh, textures=avif), tmp_path / f"o{suffix}")
+    assert [path.name for path in written] == ["o_0.png", *others, f"o{suffix}"]
     assert Image.open(tmp_path / "o_0.png").format == "PNG"
+    assert "o_0.png" in b"".join(path.read_bytes() for path in written[1:]).decode(errors="replace")
 
 
+@pytest.mark.parametrize("suffix", [".gltf", ".obj"])
 def test_png_made_for_avif_takes_no_other_image_of_its_name(
-    mesh: TexturedMesh, tmp_path: Path
+    mesh: TexturedMesh, tmp_path: Path, suffix: str
 ) -> None:
     data = BytesIO()
     Image.fromarray(np.full((4, 4, 3), 200, np.uint8)).save(data, "AVIF")
     images = (tiny.png(PIXELS, "wood.png"), Texture("wood.avif", data.getvalue(), "image/avif"))
-    again = load_mesh(write_mesh(replace(mesh, textures=images), tmp_path / "o.gltf")[-1])
+    again = load_mesh(write_mesh(replace(mesh, textures=images), tmp_path / f"o{suffix}")[-1])
     wood = next(each for each in again.materials if each.maps)
     color, normal = (again.textures[each.texture].data for each in wood.maps.values())
     assert color == images[0].data

@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 import json
-import re
-from dataclasses import replace
 
 from nispcodec.core.arrays import Float32Array
 from nispcodec.core.asset import TexturedMesh
 from nispcodec.io.write.gltf_compression import compressed
-from nispcodec.io.write.gltf_tree import MIMES, gltf_tree, uri
+from nispcodec.io.write.gltf_tree import gltf_tree, uri
 from nispcodec.io.write.names import image_names
-from nispcodec.io.write.plain_images import plain_image
+from nispcodec.io.write.plain_images import MIMES, plain_image
 
 
 def gltf_files(
@@ -25,8 +23,7 @@ def gltf_files(
     The document and its colors are those of `gltf_tree`. `compress` is one of
     `gltf_compression.COMPRESSIONS`, or None.
     """
-    # Renamed before they are told apart: a.avif is not to take the place of a.png.
-    names = image_names(stem, [replace(each, name=_as_png(each.name)) for each in mesh.textures])
+    names = image_names(stem, mesh.textures)
     tree, binary = gltf_tree(mesh, colors, names)
     if compress:
         tree, binary = compressed(tree, binary, compress)
@@ -36,7 +33,3 @@ def gltf_files(
     images = {name: image.data for name, image in shown.items()}
     text = json.dumps(tree, indent=1).encode()
     return images | {f"{stem}.bin": binary, f"{stem}.gltf": text}
-
-
-def _as_png(name: str) -> str:
-    return re.sub(r"\.avif$", ".png", name, flags=re.IGNORECASE)

@@ -12,7 +12,7 @@ from nispcodec.core.arrays import AnyArray, Float32Array, IndexArray
 from nispcodec.core.asset import Material, Texture, TexturedMesh, TextureMap
 from nispcodec.core.slots import BY_NAME, Slot
 from nispcodec.core.texture import srgb_to_linear
-from nispcodec.io.write.plain_images import plain_image
+from nispcodec.io.write.plain_images import MIMES, plain_image
 from nispcodec.io.write.tangents import tangents, without_mirrors
 from nispcodec.io.write.vertices import Normals, groups, origin, shading_normals, split_vertices
 
@@ -22,7 +22,6 @@ FLOAT, UINT32 = 5126, 5125
 ARRAY_BUFFER, ELEMENT_ARRAY_BUFFER = 34962, 34963
 WRAPS = {"repeat": 10497, "clamp": 33071, "mirror": 33648}
 FILTERS = {"linear": (9729, 9987), "nearest": (9728, 9984)}
-MIMES = ("image/png", "image/jpeg", "image/webp")
 WEBP = "EXT_texture_webp"
 
 

@@ -10,12 +10,12 @@ from nispcodec.core.slots import BY_NAME, SLOTS
 
 def gltf_losses(mesh: TexturedMesh) -> Iterator[str]:
     """The sentences of a glTF or GLB: all but AVIF is kept."""
-    if any(texture.mime == "image/avif" for texture in mesh.textures):
-        yield "the AVIF of images, which are converted to PNG: glTF readers do not know it"
+    yield from _formats(mesh)
 
 
 def obj_losses(mesh: TexturedMesh) -> Iterator[str]:
     """Those of an OBJ with its MTL."""
+    yield from _formats(mesh)
     yield from _maps(mesh, [slot for slot in SLOTS if BY_NAME[slot].mtl_write])
     if any(_is_masked(each) for each in mesh.materials):
         yield "alpha modes: MTL has none"
@@ -25,6 +25,7 @@ def obj_losses(mesh: TexturedMesh) -> Iterator[str]:
 
 def ply_losses(mesh: TexturedMesh) -> Iterator[str]:
     """Those of a PLY with its images."""
+    yield from _formats(mesh)
     yield from _maps(mesh, ["base_color"])
     if any(_factors(each) != _factors(Material()) for each in mesh.materials):
         yield "factors of materials: PLY has none"
@@ -52,6 +53,11 @@ def trimesh_losses(mesh: TexturedMesh) -> Iterator[str]:
     if any(each.strength != 1 for each in _used(mesh.materials)):
         yield "strengths of maps: trimesh has none"
     yield from _sampling(mesh.materials, {("repeat", "repeat")}, "trimesh repeats images")
+
+
+def _formats(mesh: TexturedMesh) -> Iterator[str]:
+    if any(texture.mime == "image/avif" for texture in mesh.textures):
+        yield "the AVIF of images, which are converted to PNG: few other programs know it"
 
 
 def _maps(mesh: TexturedMesh, held: list[str]) -> Iterator[str]:

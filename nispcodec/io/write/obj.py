@@ -10,6 +10,7 @@ from nispcodec.core.arrays import AnyArray, Float32Array
 from nispcodec.core.asset import Material, TexturedMesh, TextureMap
 from nispcodec.core.slots import BY_NAME
 from nispcodec.io.write.names import image_names, plain, unique
+from nispcodec.io.write.plain_images import MIMES, plain_image
 from nispcodec.io.write.vertices import shading_normals
 
 
@@ -28,7 +29,7 @@ def obj_files(
     names = unique([plain(material.name) for material in mesh.materials])
     slots = [slots for material in mesh.materials for slots in material.maps.items()]
     wanted = {used.texture for slot, used in slots if BY_NAME[slot].mtl_write}
-    files = {images[index]: mesh.textures[index].data for index in sorted(wanted)}
+    files = {images[each]: plain_image(mesh.textures[each], MIMES).data for each in sorted(wanted)}
     materials = zip(mesh.materials, names, strict=True)
     mtl = "\n".join(_mtl(material, name, images) for material, name in materials)
     return files | {

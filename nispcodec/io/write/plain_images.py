@@ -13,6 +13,9 @@ from dataclasses import replace
 from nispcodec.core.asset import Texture
 from nispcodec.core.texture import encode_image, image_bytes
 
+MIMES = ("image/png", "image/jpeg", "image/webp")
+"""Of the images that most programs know; USDZ and others that know fewer have their own."""
+
 # Color, the shape of a pixel, and EXIF, which turns.
 _PNG = (b"iCCP", b"gAMA", b"cHRM", b"sRGB", b"cICP", b"pHYs", b"eXIf")
 _JPEG = {0xE1: b"Exif\0", 0xE2: b"ICC_PROFILE\0"}

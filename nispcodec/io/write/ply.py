@@ -7,6 +7,7 @@ import numpy as np
 from nispcodec.core.arrays import AnyArray, Float32Array, Int32Array
 from nispcodec.core.asset import TexturedMesh
 from nispcodec.io.write.names import image_names
+from nispcodec.io.write.plain_images import MIMES, plain_image
 from nispcodec.io.write.vertices import Vertices, origin, shading_normals, split_vertices
 
 _TYPES = {"<f4": "float", "<f8": "double", "u1": "uchar", "<i4": "int"}
@@ -25,7 +26,7 @@ def ply_files(
     maps = [each.maps.get("base_color") for each in mesh.materials]
     used = sorted({each.texture for each in maps if each is not None})
     names = image_names(stem, mesh.textures)
-    images = {names[index]: mesh.textures[index].data for index in used}
+    images = {names[index]: plain_image(mesh.textures[index], MIMES).data for index in used}
     numbers = np.array([-1 if each is None else used.index(each.texture) for each in maps], "<i4")
     shown = np.where(mesh.has_uv, numbers[mesh.face_materials], -1).astype("<i4")
     vertices = split_vertices(mesh, np.arange(len(mesh.faces)), shading_normals(mesh))
