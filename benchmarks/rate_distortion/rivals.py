@@ -36,7 +36,7 @@ from nispcodec.core.asset import TexturedMesh
 from nispcodec.core.atomic_write import write_atomic
 from nispcodec.geometry.analysis import normalizing_frame
 from nispcodec.simplify.closest import Tree
-from nispcodec.simplify.errors import Errors, Original
+from nispcodec.simplify.errors import Counted, Errors, Original
 from nispcodec.simplify.triangles import Triangles, distinct_corners
 
 FOLDER = Path("benchmarks/results")
@@ -105,7 +105,8 @@ def ruler(source: Source) -> Callable[[TexturedMesh], Errors]:
     frame = normalizing_frame(source.mesh)
     triangles = Triangles.of(source.mesh, frame)
     hidden = source.hidden_share > NOTABLE
-    counted = source.outer_faces[distinct_corners(source.mesh)] if hidden else None
+    outer = source.outer_faces[distinct_corners(source.mesh)]
+    counted = Counted(outer, outer) if hidden else None
     original = Original.of(triangles, Tree(triangles.corners), ROUGH, SEED, counted)
 
     def errors(decoded: TexturedMesh) -> Errors:

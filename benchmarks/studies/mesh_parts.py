@@ -40,6 +40,7 @@ from nispcodec.core.arrays import BoolArray
 from nispcodec.core.asset import TexturedMesh
 from nispcodec.core.mesh_part import MeshPart
 from nispcodec.geometry.analysis import normalizing_frame
+from nispcodec.simplify.errors import Counted
 from nispcodec.simplify.ladder import Candidate, Simplifier
 from nispcodec.simplify.search import best_for
 from nispcodec.simplify.triangles import Triangles, distinct_corners
@@ -68,7 +69,7 @@ def simplifier_of(source: Source) -> Simplifier:
     triangles = Triangles.of(source.mesh, normalizing_frame(source.mesh))
     chosen = chosen_faces(source)
     kept = None if chosen is None else chosen[distinct_corners(source.mesh)]
-    return Simplifier.of(triangles, size, kept=kept)
+    return Simplifier.of(triangles, size, counted=None if kept is None else Counted(kept, kept))
 
 
 def rival_meshes(source: Source) -> Iterator[tuple[str, Corners]]:

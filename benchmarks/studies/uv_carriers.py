@@ -51,7 +51,7 @@ from nispcodec.metrics.geometry import Matches
 from nispcodec.metrics.surface import Surface
 from nispcodec.metrics.uv import uv_errors
 from nispcodec.simplify.config import CollapseConfig, CopiesConfig, FitConfig, LadderConfig
-from nispcodec.simplify.errors import mesh_of
+from nispcodec.simplify.errors import Counted, mesh_of
 from nispcodec.simplify.ladder import Simplifier
 from nispcodec.simplify.scene import scene
 from nispcodec.simplify.search import best_for
@@ -140,8 +140,8 @@ class Task:
         if bare:
             none = np.zeros(len(triangles), np.bool_)
             triangles = replace(triangles, creases=None, sheet=none)
-        kept = found.faces[distinct_corners(found.mesh)]
-        return Simplifier.of_kept(triangles, kept, coded_bytes, ladder, 0)
+        counted = Counted(found.faces, found.outer).only(distinct_corners(found.mesh))
+        return Simplifier.of_kept(triangles, counted, coded_bytes, ladder, 0)
 
     def surface(self, parts: tuple[MeshPart, ...], *, moved: bool = False) -> Surface:
         """Parts in the asset's looks; moved: their vertices onto the field's surface."""

@@ -254,7 +254,8 @@ class Choice:
     @property
     def _worth(self) -> float:
         """Times the bytes of networks that triangles within that distance may take."""
-        if self._config.target_error or self._config.target_size:
+        config = self._config
+        if config.target_error or config.target_size or config.preset == "paper":
             return 1.0
         return self._tuning.training.budgets[self._config.preset].worth
 

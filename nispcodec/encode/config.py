@@ -191,7 +191,7 @@ class FormConfig:
     far_weight: float = 0.05
     notable_far: float = 5e-4
     most_worth: float = 3.0
-    dense: float = 4.0
+    dense: float = 3.0
     notable_body: float = 0.03
     least_networks: float = 3000.0
     worth_mixing: float = 0.9

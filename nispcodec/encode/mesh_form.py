@@ -7,7 +7,6 @@ from collections.abc import Callable, Iterator
 from dataclasses import replace
 from functools import cached_property, partial
 
-from nispcodec.core.arrays import BoolArray
 from nispcodec.core.asset import TexturedMesh
 from nispcodec.core.document import Document, Field
 from nispcodec.core.mesh_part import MAX_GRID_BITS, MeshPart
@@ -24,7 +23,7 @@ from nispcodec.geometry.shown import Shown, shown
 from nispcodec.metrics.paint import Paint
 from nispcodec.simplify.closest import Tree
 from nispcodec.simplify.descent import least_loss
-from nispcodec.simplify.errors import Errors, Original
+from nispcodec.simplify.errors import Counted, Errors, Original
 from nispcodec.simplify.ladder import Candidate, Simplifier
 from nispcodec.simplify.search import best_for
 from nispcodec.simplify.triangles import Triangles, distinct_corners
@@ -51,9 +50,9 @@ class MeshForm:
     @cached_property
     def simplifier(self) -> Simplifier:
         """The maker of candidates, from the faces that can be seen."""
-        triangles, kept = self._triangles
+        triangles, counted = self._triangles
         config, seed = self._config.ladder, self._seed
-        return Simplifier.of_kept(triangles, kept, coded_bytes, config, seed, self._paint)
+        return Simplifier.of_kept(triangles, counted, coded_bytes, config, seed, self._paint)
 
     @cached_property
     def _paint(self) -> Paint:
@@ -64,19 +63,20 @@ class MeshForm:
         return shown(self._analysis)
 
     @cached_property
-    def _triangles(self) -> tuple[Triangles, BoolArray]:
-        """All of them, and which (m,) are to be held."""
+    def _triangles(self) -> tuple[Triangles, Counted]:
+        """All of them, and which are to be held."""
         found = self._shown
         triangles = Triangles.of(found.mesh, self._analysis.frame, None, found.sheet)
-        return triangles, found.faces[distinct_corners(found.mesh)]
+        counted = Counted(found.faces, found.outer)
+        return triangles, counted.only(distinct_corners(found.mesh))
 
     @cached_property
     def _original(self) -> Original:
         """Hidden faces are in it, too: networks and triangles side by side hide nothing."""
-        triangles, kept = self._triangles
+        triangles, counted = self._triangles
         samples = self._config.ladder.samples
         return Original.of(
-            triangles, Tree(triangles.corners), samples, self._seed, kept, None, self._paint
+            triangles, Tree(triangles.corners), samples, self._seed, counted, None, self._paint
         )
 
     @cached_property

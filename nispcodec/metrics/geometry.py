@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from nispcodec.core.arrays import Float64Array
+from nispcodec.core.arrays import BoolArray, Float64Array
 from nispcodec.metrics.psnr import psnr
 from nispcodec.metrics.surface import Surface, SurfacePoints
 
@@ -21,6 +21,9 @@ class Matches:
 
     def __add__(self, other: Matches) -> Matches:
         return Matches(self.original + other.original, self.decoded + other.decoded)
+
+    def __getitem__(self, chosen: BoolArray) -> Matches:
+        return Matches(self.original[chosen], self.decoded[chosen])
 
     @property
     def distances(self) -> Float64Array:

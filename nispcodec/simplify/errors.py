@@ -47,9 +47,26 @@ class Errors:
 
 
 @dataclass(frozen=True)
+class Counted:
+    """Which faces of an original (m,) a part is to hold, and which of them means are over.
+
+    held   those whose loss counts
+    outer  those that are not hidden: others are hardly to be seen, through an opening
+    """
+
+    held: BoolArray
+    outer: BoolArray
+
+    def only(self, chosen: BoolArray) -> Counted:
+        """The same of the chosen faces (m,) bool alone."""
+        return Counted(self.held[chosen], self.outer[chosen])
+
+
+@dataclass(frozen=True)
 class Original:
     """A surface that parts are compared with, and points on it.
 
+    outer  (n,) bool: which of the points means are over
     tree   for closest points
     whole  the same of all that is there, hidden faces too: nothing that is near it is made up
     paint  its base colors; None: they do not count
@@ -57,6 +74,7 @@ class Original:
 
     surface: Surface
     points: SurfacePoints
+    outer: BoolArray
     tree: Tree
     whole: Tree
     seed: int
@@ -68,20 +86,23 @@ class Original:
         tree: Tree,
         samples: int,
         seed: int,
-        counted: BoolArray | None = None,
+        counted: Counted | None = None,
         whole: Tree | None = None,
         paint: Paint | None = None,
     ) -> Original:
-        """`samples` points on the original; of those only the ones on `counted` faces (m,) bool.
+        """`samples` points on the original; of those only the ones on `counted` faces.
 
         whole: None where the tree has all. Raises MeshError where no face has an area.
         """
         mesh = triangles.mesh()
         surface = Surface(mesh, mesh.positions)
         points = surface.sample(samples, np.random.default_rng([seed, 0]))
-        if counted is not None and counted[points.faces].any():
-            points = points[counted[points.faces]]
-        return Original(surface, points, tree, whole or tree, seed, paint)
+        if counted is not None and counted.held[points.faces].any():
+            points = points[counted.held[points.faces]]
+        outer = np.ones(len(points), np.bool_)
+        if counted is not None and counted.outer[points.faces].any():
+            outer = counted.outer[points.faces]
+        return Original(surface, points, outer, tree, whole or tree, seed, paint)
 
     def errors(self, decoded: TexturedMesh) -> Errors:
         """Errors of a mesh whose positions are in the normalized frame.
@@ -93,10 +114,8 @@ class Original:
             points = other.sample(len(self.points), np.random.default_rng([self.seed, 1]))
         except MeshError:
             return Errors(np.inf, np.inf, np.inf, np.inf)
-        directions = [
-            Matches(self.points, other.closest(self.surface.outlook(self.points))),
-            Matches(self._closest(points), points),
-        ]
+        there = Matches(self.points, other.closest(self.surface.outlook(self.points)))
+        directions = [there[self.outer], Matches(self._closest(points), points)]
         misses = [uv_errors(self.surface, other, each) for each in directions]
         seen = [each for each in misses if len(each)]
         distance = max(float(each.distances.mean()) for each in directions)
@@ -108,7 +127,7 @@ class Original:
             uv_median=max((float(np.median(each)) for each in seen), default=0.0),
             color=self._color(other, directions),
             made_up=self._nowhere(FarPoints.of(decoded, points, directions[1].distances)),
-            lost=FarPoints.of(self.surface.mesh, self.points, directions[0].distances),
+            lost=FarPoints.of(self.surface.mesh, self.points, there.distances),
             far_part=distance - near,
         )
 

@@ -8,7 +8,6 @@ from functools import cached_property
 
 import numpy as np
 
-from nispcodec.core.arrays import BoolArray
 from nispcodec.core.mesh_part import MAX_GRID_BITS, MeshPart
 from nispcodec.metrics.paint import Paint
 from nispcodec.simplify.closest import Tree
@@ -16,7 +15,7 @@ from nispcodec.simplify.collapse import collapsed
 from nispcodec.simplify.config import LadderConfig
 from nispcodec.simplify.copies import Copies
 from nispcodec.simplify.copy_search import copies_of
-from nispcodec.simplify.errors import Errors, Original, mesh_of
+from nispcodec.simplify.errors import Counted, Errors, Original, mesh_of
 from nispcodec.simplify.position_fit import fitted_positions
 from nispcodec.simplify.scene import scene
 from nispcodec.simplify.shading import shaded
@@ -76,40 +75,41 @@ class Simplifier:
         coded: Coded,
         config: LadderConfig = LadderConfig(),
         seed: int = 0,
-        kept: BoolArray | None = None,
+        counted: Counted | None = None,
         paint: Paint | None = None,
     ) -> Simplifier:
-        """kept: (m,) bool, the faces that candidates hold and that are looked for; None: all.
+        """counted: the faces that candidates hold and that are looked for; None: all.
 
         The others, such as those hidden in bodies, may be found where they are, but are not missed.
         paint: the colors of the materials, where these count.
         Raises MeshError where no face has an area.
         """
-        copies = copies_of(triangles, config.copies, kept)
-        return Simplifier._of(copies, triangles, kept, None, coded, config, seed, paint)
+        held = None if counted is None else counted.held
+        copies = copies_of(triangles, config.copies, held)
+        return Simplifier._of(copies, triangles, counted, None, coded, config, seed, paint)
 
     @staticmethod
     def of_kept(
         triangles: Triangles,
-        kept: BoolArray,
+        counted: Counted,
         coded: Coded,
         config: LadderConfig,
         seed: int,
         paint: Paint | None = None,
     ) -> Simplifier:
-        """As `of`, but others than the kept faces are found only where copies have them."""
-        copies = copies_of(triangles, config.copies, kept)
+        """As `of`, but others than the faces to hold are found only where copies have them."""
+        copies = copies_of(triangles, config.copies, counted.held)
         if copies.covered.all():
-            return Simplifier._of(copies, triangles, kept, None, coded, config, seed, paint)
-        there, kept = triangles.only(copies.covered), kept[copies.covered]
+            return Simplifier._of(copies, triangles, counted, None, coded, config, seed, paint)
+        there, counted = triangles.only(copies.covered), counted.only(copies.covered)
         whole = Tree(triangles.corners)
-        return Simplifier._of(copies, there, kept, whole, coded, config, seed, paint)
+        return Simplifier._of(copies, there, counted, whole, coded, config, seed, paint)
 
     @staticmethod
     def _of(
         copies: Copies,
         triangles: Triangles,
-        kept: BoolArray | None,
+        counted: Counted | None,
         whole: Tree | None,
         coded: Coded,
         config: LadderConfig,
@@ -119,7 +119,7 @@ class Simplifier:
         source = Source(copies.triangles)
         same = len(source.triangles) == len(triangles)
         tree = source.tree if same else Tree(triangles.corners)
-        original = Original.of(triangles, tree, config.samples, seed, kept, whole, paint)
+        original = Original.of(triangles, tree, config.samples, seed, counted, whole, paint)
         return Simplifier(copies, source, original, coded, config, seed)
 
     def fitted(self, faces: int) -> Triangles:

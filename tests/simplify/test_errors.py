@@ -9,7 +9,7 @@ import pytest
 
 from nispcodec.metrics.compare import Reference
 from nispcodec.simplify.collapse import collapsed
-from nispcodec.simplify.errors import Errors, Original, mesh_of
+from nispcodec.simplify.errors import Counted, Errors, Original, mesh_of
 from nispcodec.simplify.quantize import quantized
 from nispcodec.simplify.source import Source
 from tests.simplify.meshes import ball, bare_ball, sheet
@@ -48,9 +48,19 @@ def test_only_counted_faces_are_looked_for() -> None:
     source = Source(ball())
     above = source.triangles.corners[..., 2].mean(axis=1) > 0
     half = source.triangles.only(above)
-    counted = Original.of(source.triangles, source.tree, 2000, 0, above)
+    counted = Original.of(source.triangles, source.tree, 2000, 0, Counted(above, above))
     assert counted.errors(half.mesh()).distance < 1e-9
     assert Original.of(source.triangles, source.tree, 2000, 0).errors(half.mesh()).distance > 0.1
+
+
+def test_means_are_over_outer_faces_and_what_is_lost_over_all_that_are_held() -> None:
+    source = Source(ball())
+    above = source.triangles.corners[..., 2].mean(axis=1) > 0
+    counted = Counted(np.ones(len(above), np.bool_), above)
+    half = source.triangles.only(above).mesh()
+    errors = Original.of(source.triangles, source.tree, 2000, 0, counted).errors(half)
+    assert errors.distance < 1e-9
+    assert errors.lost.share == pytest.approx(0.5, abs=0.03)
 
 
 def test_what_is_missing_is_lost_and_what_is_too_much_is_made_up() -> None:

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from nispcodec.format.mesh import encode
+from nispcodec.simplify.errors import Counted
 from nispcodec.simplify.ladder import Candidate, Simplifier
 from nispcodec.simplify.triangles import Triangles
 from tests.geometry import shapes
@@ -51,7 +52,9 @@ def test_a_mesh_of_few_faces_has_candidates(count: int) -> None:
 def test_faces_that_are_not_kept_are_not_missed_but_may_be_found() -> None:
     given = ball()
     above = given.corners[..., 2].mean(axis=1) > 0
-    half = Simplifier.of(given, coded, SMALL, kept=above).candidate(len(given), 14, 14)
+    half = Simplifier.of(given, coded, SMALL, counted=Counted(above, above)).candidate(
+        len(given), 14, 14
+    )
     assert half.faces == above.sum()
     assert half.errors.distance < 1e-3
 
@@ -68,6 +71,6 @@ def test_without_copies_hidden_faces_change_nothing() -> None:
     both = triangles_of(shapes.soup(np.concatenate([shapes.sphere(8), inner])))
     kept = np.arange(len(both)) < len(both) - len(inner)
     alone = simplifier(both.only(kept)).balanced(60)
-    found = Simplifier.of_kept(both, kept, coded, SMALL, 0).balanced(60)
+    found = Simplifier.of_kept(both, Counted(kept, kept), coded, SMALL, 0).balanced(60)
     assert found.errors == alone.errors
     assert encode(found.parts) == encode(alone.parts)
