@@ -106,7 +106,7 @@ def ruler(source: Source) -> Callable[[TexturedMesh], Errors]:
     triangles = Triangles.of(source.mesh, frame)
     hidden = source.hidden_share > NOTABLE
     outer = source.outer_faces[distinct_corners(source.mesh)]
-    counted = Counted(outer, outer) if hidden else None
+    counted = Counted.of(outer) if hidden else None
     original = Original.of(triangles, Tree(triangles.corners), ROUGH, SEED, counted)
 
     def errors(decoded: TexturedMesh) -> Errors:

@@ -69,7 +69,7 @@ def simplifier_of(source: Source) -> Simplifier:
     triangles = Triangles.of(source.mesh, normalizing_frame(source.mesh))
     chosen = chosen_faces(source)
     kept = None if chosen is None else chosen[distinct_corners(source.mesh)]
-    return Simplifier.of(triangles, size, counted=None if kept is None else Counted(kept, kept))
+    return Simplifier.of(triangles, size, counted=None if kept is None else Counted.of(kept))
 
 
 def rival_meshes(source: Source) -> Iterator[tuple[str, Corners]]:

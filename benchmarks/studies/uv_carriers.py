@@ -140,7 +140,7 @@ class Task:
         if bare:
             none = np.zeros(len(triangles), np.bool_)
             triangles = replace(triangles, creases=None, sheet=none)
-        counted = Counted(found.faces, found.outer).only(distinct_corners(found.mesh))
+        counted = Counted(found.faces, found.inner).only(distinct_corners(found.mesh))
         return Simplifier.of_kept(triangles, counted, coded_bytes, ladder, 0)
 
     def surface(self, parts: tuple[MeshPart, ...], *, moved: bool = False) -> Surface:

@@ -67,7 +67,7 @@ class MeshForm:
         """All of them, and which are to be held."""
         found = self._shown
         triangles = Triangles.of(found.mesh, self._analysis.frame, None, found.sheet)
-        counted = Counted(found.faces, found.outer)
+        counted = Counted(found.faces, found.inner)
         return triangles, counted.only(distinct_corners(found.mesh))
 
     @cached_property

@@ -24,13 +24,13 @@ class Shown:
     faces  (m,) bool: what is not hidden, or is inside another body and seen for all that, through
            an opening of it: no signed distance can hold those, but triangles can; and hidden faces
            beside two others, as jagged borders take more bytes than they do
-    outer  (m,) bool: those of them that are not hidden, which a signed distance can hold
+    inner  (m,) bool: those inside another body that are seen through an opening
     sheet  (m,) bool: open surfaces, which have no inside
     """
 
     mesh: TexturedMesh
     faces: BoolArray
-    outer: BoolArray
+    inner: BoolArray
     sheet: BoolArray
 
 
@@ -49,11 +49,12 @@ def shown(analysis: Analysis) -> Shown:
         uv_faces=np.where(turned[:, None], mesh.uv_faces[:, ::-1], mesh.uv_faces),
         creases=_turned(mesh.creases, turned),
     )
-    outer = _any(solid.parents, count)
-    faces, hidden = outer.copy(), np.flatnonzero(~outer)
-    faces[hidden] = _seen(analysis.frame.to_normalized(mesh.corners), hidden, config)
+    faces, inner = _any(solid.parents, count), np.zeros(count, np.bool_)
+    hidden = np.flatnonzero(~faces)
+    inner[hidden] = _seen(analysis.frame.to_normalized(mesh.corners), hidden, config)
+    faces |= inner
     faces |= _beside_two(welded(flipped).positions, faces)
-    return Shown(flipped, faces, outer, _by_body(flipped, faces, sheet & ~walls))
+    return Shown(flipped, faces, inner, _by_body(flipped, faces, sheet & ~walls))
 
 
 def _turned(creases: BoolArray | None, turned: BoolArray) -> BoolArray | None:

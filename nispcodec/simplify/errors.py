@@ -14,6 +14,7 @@ from nispcodec.core.mesh_part import MeshPart
 from nispcodec.metrics.far_points import FAR, FarPoints
 from nispcodec.metrics.geometry import Matches
 from nispcodec.metrics.paint import Paint
+from nispcodec.metrics.sides import sides_of
 from nispcodec.metrics.surface import Surface, SurfacePoints
 from nispcodec.metrics.uv import uv_errors
 from nispcodec.simplify.closest import Tree
@@ -48,25 +49,32 @@ class Errors:
 
 @dataclass(frozen=True)
 class Counted:
-    """Which faces of an original (m,) a part is to hold, and which of them means are over.
+    """Which faces of an original (m,) a part is to hold.
 
-    held   those whose loss counts
-    outer  those that are not hidden: others are hardly to be seen, through an opening
+    held   all of those
+    inner  those of them inside other bodies that are seen through an opening: means leave them
+           out, as no signed distance can hold them, but their loss counts
     """
 
     held: BoolArray
-    outer: BoolArray
+    inner: BoolArray
+
+    @staticmethod
+    def of(held: BoolArray) -> Counted:
+        """These faces (m,) bool, none of them seen through an opening."""
+        return Counted(held, np.zeros_like(held))
 
     def only(self, chosen: BoolArray) -> Counted:
         """The same of the chosen faces (m,) bool alone."""
-        return Counted(self.held[chosen], self.outer[chosen])
+        return Counted(self.held[chosen], self.inner[chosen])
 
 
 @dataclass(frozen=True)
 class Original:
     """A surface that parts are compared with, and points on it.
 
-    outer  (n,) bool: which of the points means are over
+    points all that count: hidden ones do, where one sees their face through an opening
+    outer  (n,) bool: those that are not hidden, which means are over
     tree   for closest points
     whole  the same of all that is there, hidden faces too: nothing that is near it is made up
     paint  its base colors; None: they do not count
@@ -99,10 +107,11 @@ class Original:
         points = surface.sample(samples, np.random.default_rng([seed, 0]))
         if counted is not None and counted.held[points.faces].any():
             points = points[counted.held[points.faces]]
-        outer = np.ones(len(points), np.bool_)
-        if counted is not None and counted.outer[points.faces].any():
-            outer = counted.outer[points.faces]
-        return Original(surface, points, outer, tree, whole or tree, seed, paint)
+        outer = sides_of(surface, points).outer
+        if not outer.any():
+            outer[:] = True
+        seen = outer if counted is None else outer | counted.inner[points.faces]
+        return Original(surface, points[seen], outer[seen], tree, whole or tree, seed, paint)
 
     def errors(self, decoded: TexturedMesh) -> Errors:
         """Errors of a mesh whose positions are in the normalized frame.

@@ -12,7 +12,8 @@ from nispcodec.simplify.collapse import collapsed
 from nispcodec.simplify.errors import Counted, Errors, Original, mesh_of
 from nispcodec.simplify.quantize import quantized
 from nispcodec.simplify.source import Source
-from tests.simplify.meshes import ball, bare_ball, sheet
+from tests.geometry import shapes
+from tests.simplify.meshes import ball, bare_ball, sheet, triangles_of
 
 
 def test_the_same_as_compare() -> None:
@@ -48,19 +49,21 @@ def test_only_counted_faces_are_looked_for() -> None:
     source = Source(ball())
     above = source.triangles.corners[..., 2].mean(axis=1) > 0
     half = source.triangles.only(above)
-    counted = Original.of(source.triangles, source.tree, 2000, 0, Counted(above, above))
+    counted = Original.of(source.triangles, source.tree, 2000, 0, Counted.of(above))
     assert counted.errors(half.mesh()).distance < 1e-9
     assert Original.of(source.triangles, source.tree, 2000, 0).errors(half.mesh()).distance > 0.1
 
 
-def test_means_are_over_outer_faces_and_what_is_lost_over_all_that_are_held() -> None:
-    source = Source(ball())
-    above = source.triangles.corners[..., 2].mean(axis=1) > 0
-    counted = Counted(np.ones(len(above), np.bool_), above)
-    half = source.triangles.only(above).mesh()
-    errors = Original.of(source.triangles, source.tree, 2000, 0, counted).errors(half)
-    assert errors.distance < 1e-9
-    assert errors.lost.share == pytest.approx(0.5, abs=0.03)
+def test_hidden_points_count_where_their_face_is_seen_and_then_as_lost_alone() -> None:
+    inside = shapes.sphere(8) * 0.3
+    both = triangles_of(shapes.soup(np.concatenate([shapes.sphere(8), inside])))
+    source, inner = Source(both), np.arange(len(both)) >= len(both) - len(inside)
+    outside = both.only(~inner).mesh()
+    for seen, share in ((inner, 0.08), (np.zeros_like(inner), 0.0)):
+        counted = Counted(np.ones(len(both), np.bool_), seen)
+        errors = Original.of(both, source.tree, 4000, 0, counted).errors(outside)
+        assert errors.distance < 1e-9
+        assert errors.lost.share == pytest.approx(share, abs=0.02)
 
 
 def test_what_is_missing_is_lost_and_what_is_too_much_is_made_up() -> None:

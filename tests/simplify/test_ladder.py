@@ -52,7 +52,7 @@ def test_a_mesh_of_few_faces_has_candidates(count: int) -> None:
 def test_faces_that_are_not_kept_are_not_missed_but_may_be_found() -> None:
     given = ball()
     above = given.corners[..., 2].mean(axis=1) > 0
-    half = Simplifier.of(given, coded, SMALL, counted=Counted(above, above)).candidate(
+    half = Simplifier.of(given, coded, SMALL, counted=Counted.of(above)).candidate(
         len(given), 14, 14
     )
     assert half.faces == above.sum()
@@ -71,6 +71,6 @@ def test_without_copies_hidden_faces_change_nothing() -> None:
     both = triangles_of(shapes.soup(np.concatenate([shapes.sphere(8), inner])))
     kept = np.arange(len(both)) < len(both) - len(inner)
     alone = simplifier(both.only(kept)).balanced(60)
-    found = Simplifier.of_kept(both, Counted(kept, kept), coded, SMALL, 0).balanced(60)
+    found = Simplifier.of_kept(both, Counted.of(kept), coded, SMALL, 0).balanced(60)
     assert found.errors == alone.errors
     assert encode(found.parts) == encode(alone.parts)
