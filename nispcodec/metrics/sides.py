@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from nispcodec.core.arrays import BoolArray
+from nispcodec.core.arrays import BoolArray, Float64Array
 from nispcodec.metrics.surface import Surface, SurfacePoints
 
 PROBE = 2e-3
@@ -31,19 +31,22 @@ class Sides:
         return ~self.hidden
 
 
-def sides_of(surface: Surface, points: SurfacePoints) -> Sides:
+def sides_of(surface: Surface, points: SurfacePoints, corners: Float64Array | None = None) -> Sides:
     """The sides of points on a surface, told by the winding number PROBE off along the normal.
 
     Outside is |winding number| <= 1/2 (Jacobson et al. 2013). Hidden faces, inside other bodies,
-    cannot be held by a signed distance field.
+    cannot be held by a signed distance field. `corners` (m, 3, 3) are those of the faces that wind,
+    where they are more than the surface's.
     """
     import igl
 
     offset = PROBE * surface.normals[points.faces]
     probes = np.concatenate([points.positions + offset, points.positions - offset])
-    faces = np.asarray(surface.mesh.faces, dtype=np.int64)
+    if corners is None:
+        corners = surface.positions[surface.mesh.faces]
+    vertices = np.ascontiguousarray(corners.reshape(-1, 3))
     tree = igl.FastWindingNumberBVH()
-    tree.init(surface.positions, faces)
+    tree.init(vertices, np.arange(len(vertices), dtype=np.int64).reshape(-1, 3))
     inside = np.abs(tree.winding_number(probes, ACCURACY)) > 0.5
     above, below = np.split(inside, 2)
     return Sides(hidden=above & below, sheet=~above & ~below)

@@ -107,7 +107,7 @@ class Original:
         points = surface.sample(samples, np.random.default_rng([seed, 0]))
         if counted is not None and counted.held[points.faces].any():
             points = points[counted.held[points.faces]]
-        outer = sides_of(surface, points).outer
+        outer = sides_of(surface, points, (whole or tree).corners).outer
         if not outer.any():
             outer[:] = True
         seen = outer if counted is None else outer | counted.inner[points.faces]
@@ -123,6 +123,8 @@ class Original:
             points = other.sample(len(self.points), np.random.default_rng([self.seed, 1]))
         except MeshError:
             return Errors(np.inf, np.inf, np.inf, np.inf)
+        outer = sides_of(other, points).outer
+        points = points[outer] if outer.any() else points
         there = Matches(self.points, other.closest(self.surface.outlook(self.points)))
         directions = [there[self.outer], Matches(self._closest(points), points)]
         misses = [uv_errors(self.surface, other, each) for each in directions]
