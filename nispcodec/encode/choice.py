@@ -133,15 +133,16 @@ class Choice:
 
     def after_fit(self, field: Document, errors: Errors) -> Chosen:
         """The fitted document, whose surface has these errors, or triangles that are better."""
-        size = own_bytes(field)
-        if self._open and self._loss:
+        if not self._open:
+            return Chosen(field, errors, self._estimate)
+        if self._loss:
             return self._of_less_loss(field, errors, self._loss)
-        if self._open and errors.made_up.share > self._forms.notable_far:
+        size = own_bytes(field)
+        if errors.made_up.share > self._forms.notable_far:
             instead = self._instead(field, size, errors)
             if instead:
                 return instead
-        surely_larger = self._forms.surely_larger * self._worth * size
-        if not self._open or self._estimate > surely_larger:
+        if self._estimate > self._forms.surely_larger * self._worth * size:
             return Chosen(field, errors, self._estimate)
         found = self._rival(size, errors)
         if found is None:
@@ -254,8 +255,7 @@ class Choice:
     @property
     def _worth(self) -> float:
         """Times the bytes of networks that triangles within that distance may take."""
-        config = self._config
-        if config.target_error or config.target_size or config.preset == "paper":
+        if self._config.target_error or self._config.target_size:
             return 1.0
         return self._tuning.training.budgets[self._config.preset].worth
 
