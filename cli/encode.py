@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import shutil
 import time
-from dataclasses import dataclass, field, replace
+from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -20,12 +20,13 @@ from .pruning import pruning_options
 from .ranges import Real, Whole
 from .report import print_group, print_json, rate
 from .sizes import parsed_size
-from .sources import read_mesh
+from .sources import read_counted
 from .subcommand import force_option, json_option, subcommand
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
+    from nispcodec.catalogue.inputs import InputBytes
     from nispcodec.core.asset import TexturedMesh
     from nispcodec.core.progress import Listener, Progress
     from nispcodec.encode.config import EncodeConfig
@@ -129,14 +130,14 @@ def command(
     started = time.monotonic()
     refuse_overwriting_others(output, force)
     config = nispcodec.EncodeConfig(textures=not no_textures, **how)
-    asset = _loaded(mesh, unwrap)
+    asset, read = _loaded(mesh, unwrap)
     warn(asset.warnings)
     _expect_possible(asset, config, output)
     heard = _Heard()
     model = _encoded(asset, config, progress, quiet, heard)
     asset = replace(asset, warnings=(*asset.warnings, *heard.warnings))
     nispcodec.save(model, output)
-    report = _report(model, asset, config, mesh, output, time.monotonic() - started)
+    report = _report(model, asset, config, read, output, time.monotonic() - started)
     report["parts"] = with_errors(report["parts"], heard.part_errors)
     if as_json:
         print_json(report)
@@ -179,13 +180,13 @@ def _encoded(
         warn(heard.warnings)
 
 
-def _loaded(path: Path, unwrap: bool) -> TexturedMesh:
-    mesh = read_mesh(path)
+def _loaded(path: Path, unwrap: bool) -> tuple[TexturedMesh, InputBytes]:
+    mesh, read = read_counted(path)
     if not unwrap:
-        return mesh
+        return mesh, read
     from .unwrapping import unwrapped
 
-    return unwrapped(mesh)
+    return unwrapped(mesh), read
 
 
 def _expect_possible(asset: TexturedMesh, config: EncodeConfig, output: Path) -> None:
@@ -211,18 +212,14 @@ def _report(
     model: NispModel,
     asset: TexturedMesh,
     config: EncodeConfig,
-    source: Path,
+    read: InputBytes,
     output: Path,
     seconds: float,
 ) -> dict[str, Any]:
-    beside = () if source.suffix.lower() == ".glb" else asset.textures
     return {
         "file": str(output),
         "bytes": rate(output.read_bytes()),
-        "input_bytes": {
-            "mesh": source.stat().st_size,
-            "textures": sum(len(texture.data) for texture in beside),
-        },
+        "input_bytes": asdict(read),
         "held_as": why(model.document),
         "parts": parts_of(model.document, output.read_bytes()),
         "hint": _hint(rate(output.read_bytes()), config),

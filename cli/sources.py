@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, BinaryIO
 import click
 
 if TYPE_CHECKING:
+    from nispcodec.catalogue.inputs import InputBytes
     from nispcodec.core.asset import TexturedMesh
     from nispcodec.core.document import Document
 
@@ -125,8 +126,24 @@ def is_nisp(path: Path) -> bool:
 
 def read_mesh(path: Path) -> TexturedMesh:
     """The mesh in a file. Raises NispError in words for what is none, MeshError for a bad one."""
+    from nispcodec.io.load import load_mesh
+
+    _expect_mesh(path)
+    return load_mesh(path)
+
+
+def read_counted(path: Path) -> tuple[TexturedMesh, InputBytes]:
+    """As `read_mesh`, and the bytes of all that was read. Raises what that raises."""
+    from nispcodec.catalogue.inputs import read_noted
+
+    _expect_mesh(path)
+    mesh, _, read = read_noted(str(path))
+    return mesh, read
+
+
+def _expect_mesh(path: Path) -> None:
     from nispcodec.core.errors import NispError
-    from nispcodec.io.load import READERS, load_mesh
+    from nispcodec.io.load import READERS
 
     if str(path) == "-":
         raise NispError(f"{path}: expected a file, found standard input: a name says what it is")
@@ -136,7 +153,6 @@ def read_mesh(path: Path) -> TexturedMesh:
     if path.suffix.lower() in READERS:
         with _in_words(path), path.open("rb"):
             pass
-    return load_mesh(path)
 
 
 def _beginning(data: bytes) -> str:

@@ -6,7 +6,7 @@ import hashlib
 import json
 import os
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from nispcodec.catalogue.storage import storage_of
@@ -17,6 +17,17 @@ from nispcodec.io.load import parse_mesh, reader_of
 
 Inputs = dict[str, str | None]
 
+OF_THE_MESH = (".bin", ".mtl")
+"""Suffixes of what is read beside an asset's file and is no image."""
+
+
+@dataclass(frozen=True)
+class InputBytes:
+    """Bytes on disk: of the file with its buffers and material library, and of images beside it."""
+
+    mesh: int
+    textures: int
+
 
 @dataclass(frozen=True)
 class NotedFolder(Folder):
@@ -25,6 +36,7 @@ class NotedFolder(Folder):
     inner: Folder
     top: Path
     notes: Inputs = field(repr=False)
+    sizes: dict[str, int] = field(repr=False)
 
     def find(self, reference: str) -> Path | None:
         """As the folder within."""
@@ -35,12 +47,13 @@ class NotedFolder(Folder):
 
     def beside(self, path: Path) -> Folder:
         """The same of another folder."""
-        return NotedFolder(path.parent, self.inner.beside(path), self.top, self.notes)
+        return replace(self, path=path.parent, inner=self.inner.beside(path))
 
     def read(self, path: Path) -> bytes:
         """As the folder within. Raises MeshError when the file cannot be read."""
         data = self.inner.read(path)
         self.notes[self._way(path)] = sha256(data)
+        self.sizes[self._way(path)] = len(data)
         return data
 
     def _way(self, path: Path) -> str:
@@ -48,8 +61,8 @@ class NotedFolder(Folder):
         return "" if way == "." else way
 
 
-def read_noted(source: str) -> tuple[TexturedMesh, Inputs, int]:
-    """The mesh in a file, as `load_mesh` gives it, what it was read from, and the file's bytes.
+def read_noted(source: str) -> tuple[TexturedMesh, Inputs, InputBytes]:
+    """The mesh in a file, as `load_mesh` gives it, what it was read from, and how much that is.
 
     Raises MeshError for a file that cannot be read or makes no sense.
     """
@@ -61,8 +74,14 @@ def read_noted(source: str) -> tuple[TexturedMesh, Inputs, int]:
         raise MeshError(f"{source}: expected a file, found none") from why
     inner = storage.folder(source)
     notes: Inputs = {path.name: sha256(data)}
-    mesh = parse_mesh(data, path, NotedFolder(inner.path, inner, inner.path, notes))
-    return mesh, notes, len(data)
+    sizes: dict[str, int] = {}
+    mesh = parse_mesh(data, path, NotedFolder(inner.path, inner, inner.path, notes, sizes))
+    return mesh, notes, _input_bytes(len(data), sizes)
+
+
+def _input_bytes(file: int, beside: Mapping[str, int]) -> InputBytes:
+    of_mesh = sum(size for way, size in beside.items() if way.lower().endswith(OF_THE_MESH))
+    return InputBytes(file + of_mesh, sum(beside.values()) - of_mesh)
 
 
 def unchanged(source: str, inputs: Mapping[str, str | None]) -> bool:

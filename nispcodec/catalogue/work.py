@@ -59,7 +59,7 @@ def _made(job: Job, encode: Encoder) -> Record:
     started, output = time.monotonic(), job.asset.output
     place = joined(job.folder, output)
     storage = storage_of(place)
-    read, inputs, size = read_noted(job.asset.source)
+    read, inputs, sizes = read_noted(job.asset.source)
     mesh = _unwrapped(read) if job.settings.unwrap else read
     model, warnings = _encoded(job, mesh, encode)
     data = _verified(model)
@@ -77,7 +77,11 @@ def _made(job: Job, encode: Encoder) -> Record:
         settings=job.settings.digest,
         options=job.settings.options,
         sha256=sha256(data),
-        bytes={**_rate(data), **_input_bytes(job.asset.source, size, read)},
+        bytes={
+            **_rate(data),
+            "input_mesh": sizes.mesh,
+            "input_textures": sizes.textures,
+        },
         errors=errors,
         seconds={"encode": round(encoded, 3), "all": round(time.monotonic() - started, 3)},
         warnings=warnings,
@@ -128,12 +132,6 @@ def _rate(data: bytes) -> dict[str, int]:
 
     textures = sum(each.stored_length for each in inspect(data) if each.code == TXTR)
     return {"geometry_uv": len(data) - textures, "textures": textures, "total": len(data)}
-
-
-def _input_bytes(source: str, size: int, mesh: TexturedMesh) -> dict[str, int]:
-    """As `nisp encode` counts them: the images of a GLB are in its file."""
-    beside = () if Path(source).suffix.lower() == ".glb" else mesh.textures
-    return {"input_mesh": size, "input_textures": sum(len(each.data) for each in beside)}
 
 
 def _errors(model: NispModel, mesh: TexturedMesh, compare: bool) -> dict[str, float]:

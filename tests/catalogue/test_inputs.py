@@ -1,10 +1,12 @@
 from __future__ import annotations
 
+import base64
+import json
 from pathlib import Path
 
 import pytest
 
-from nispcodec.catalogue.inputs import content, read_noted, unchanged
+from nispcodec.catalogue.inputs import InputBytes, content, read_noted, unchanged
 from nispcodec.core.errors import MeshError
 from nispcodec.io.load import load_mesh
 from nispcodec.io.save import write_mesh
@@ -46,6 +48,28 @@ def test_an_image_that_comes_later_is_a_change(mug: Path) -> None:
     assert unchanged(str(mug), inputs)
     image.write_bytes(data)
     assert not unchanged(str(mug), inputs)
+
+
+@pytest.mark.parametrize("suffix", [".obj", ".gltf", ".glb"])
+def test_every_byte_on_the_disk_counts_once(tmp_path: Path, suffix: str) -> None:
+    path = tmp_path / f"mug{suffix}"
+    write_mesh(sample_asset(), path)
+    images = sum(each.stat().st_size for each in tmp_path.glob("*.png"))
+    everything = sum(each.stat().st_size for each in tmp_path.iterdir())
+    assert read_noted(str(path))[2] == InputBytes(everything - images, images)
+
+
+def test_what_is_embedded_does_not_count_again(tmp_path: Path) -> None:
+    path = tmp_path / "mug.gltf"
+    write_mesh(sample_asset(), path)
+    root = json.loads(path.read_text())
+    for each in (*root["buffers"], *root["images"]):
+        data = base64.b64encode((tmp_path / each["uri"]).read_bytes()).decode()
+        each["uri"] = f"data:application/octet-stream;base64,{data}"
+    path.write_text(json.dumps(root))
+    mesh, _, read = read_noted(str(path))
+    assert mesh.textures
+    assert read == InputBytes(path.stat().st_size, 0)
 
 
 def test_content_is_of_all_hashes() -> None:
