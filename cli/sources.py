@@ -91,7 +91,7 @@ def parsed(data: bytes, name: object) -> Document:
     from nispcodec.format import unpack
 
     if wrong := no_nisp(data):
-        raise NispError(f"{name}: {wrong}")
+        raise NispError(f"{name}: {wrong}{_way_out(str(name))}")
     try:
         return unpack(data)
     except FormatError as error:
@@ -109,6 +109,14 @@ def no_nisp(data: bytes) -> str:
     if SIGNATURE.startswith(head):
         return ""
     return f"this is no .nisp file: expected {SIGNATURE[:4]!r} first, found {_beginning(data)}"
+
+
+def _way_out(name: str) -> str:
+    """What makes a `.nisp` of a mesh file; "" for other names."""
+    from nispcodec.io.load import READERS
+
+    is_mesh = Path(name).suffix.lower() in READERS
+    return ": `nisp encode` makes one of a mesh" if is_mesh else ""
 
 
 def is_nisp(path: Path) -> bool:
@@ -150,6 +158,9 @@ def _expect_mesh(path: Path) -> None:
     if is_nisp(path):
         wanted = f"{path}: expected a mesh file ({' '.join(READERS)})"
         raise NispError(f"{wanted}, found a .nisp file: `nisp decode` makes a mesh of it")
+    if path.is_dir():
+        wanted = f"{path}: expected a file, found a folder"
+        raise NispError(f"{wanted}: `nisp batch` encodes all that is in one")
     if path.suffix.lower() in READERS:
         with _in_words(path), path.open("rb"):
             pass

@@ -46,13 +46,22 @@ def with_outliers_named(mesh: TexturedMesh) -> TexturedMesh:
             f"resolution: remove the face(s), or encode them as an asset of their own"
         )
     has_uv = mesh.has_uv
-    far, times = _far(mesh.corner_uvs[has_uv], corners[has_uv], UVS)
+    uvs = mesh.corner_uvs[has_uv]
+    far, times = _far(uvs, corners[has_uv], UVS)
     if far:
         warnings.append(
             f"texture coordinates of {far} face(s) lie far from the others, which get "
-            f"1/{times:.0f} of the accuracy: move them by whole tiles"
+            f"1/{times:.0f} of the accuracy: {_cure(uvs)}"
         )
     return replace(mesh, warnings=tuple(warnings))
+
+
+def _cure(uvs: Float64Array) -> str:
+    """What brings the texture coordinates (m, 3, 2) of faces near each other."""
+    tiles = float(np.ptp(uvs, axis=1).max())
+    if tiles < UVS.far * UVS.least:
+        return "move them by whole tiles"
+    return f"one face runs over {tiles:.0f} tiles; one image of several tiles makes them fewer"
 
 
 def _far(values: Float64Array, corners: Float64Array, limits: Limits) -> tuple[int, float]:

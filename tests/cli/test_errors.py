@@ -88,6 +88,18 @@ def test_no_permission_is_told(model: Path, command: str, monkeypatch: pytest.Mo
     refused(nisp(*arguments), f"{model}: expected a file that can be read, found: Permission")
 
 
+@pytest.mark.parametrize("command", READERS)
+def test_who_brings_a_mesh_is_told_how_to_get_a_nisp(mesh: Path, command: str) -> None:
+    result = nisp(*asked(command, str(mesh)))
+    refused(result, f"nisp: error: {mesh}: this is no .nisp", "`nisp encode` makes one of a mesh")
+
+
+@pytest.mark.parametrize("arguments", [("encode", "in", "-o", "o"), ("compare", "in", "in")])
+def test_who_brings_a_folder_is_told_of_batch(folder: Path, arguments: tuple[str, ...]) -> None:
+    (folder / "in").mkdir()
+    refused(nisp(*arguments), "nisp: error: in: expected a file, found a folder", "`nisp batch`")
+
+
 def test_verify_says_that_a_mesh_is_no_nisp(mesh: Path) -> None:
     result = nisp("verify", mesh)
     assert result.exit_code == 1

@@ -44,6 +44,18 @@ def test_uvs_far_from_the_others_are_named() -> None:
     assert warning.startswith("texture coordinates of 1 face(s) lie far from the others")
 
 
+def test_moving_is_advised_only_where_it_helps() -> None:
+    moved = with_speck(0.01, 0.5, 1e4)
+    uvs = moved.uvs.copy()
+    uvs[-1] += 60
+    for mesh, words in (
+        (moved, "move them by whole tiles"),
+        (replace(moved, uvs=uvs), "one face runs over 60 tiles"),
+    ):
+        (warning,) = with_outliers_named(mesh).warnings
+        assert words in warning
+
+
 def test_few_large_faces_and_a_far_speck() -> None:
     mesh = with_speck(0.001, 50, 0.5)
     two = replace(
