@@ -171,13 +171,15 @@ class SliverConfig:
              best of triangles: worse ones show in shading, better ones follow what is long
     turned   what is said of worse ones, and of faces that are turned over
     give     share of a bad face's longest side that the surface may move by
+    slides   shares of an edge that a vertex may slide along it
     rounds   in each of which every vertex changes once at most
     """
 
     aspect: float = 50.0
     turned: float = 1e4
     give: float = 0.05
-    rounds: int = 12
+    slides: tuple[float, ...] = (0.1, 0.25, 0.5)
+    rounds: int = 48
 
 
 @dataclass(frozen=True)

@@ -1,4 +1,4 @@
-"""The two operations that take slivers away, many at a time, and which of them go together."""
+"""The operations that take slivers away, many at a time, and which of them go together."""
 
 from __future__ import annotations
 
@@ -26,16 +26,22 @@ class Shapes:
         normals = gradients.astype(np.float64) / np.maximum(lengths, 1e-12)
         return Shapes(positions.astype(np.float64), normals, config)
 
+    def with_more(self, others: Shapes) -> Shapes:
+        """These vertices, and after them those of another."""
+        positions = np.concatenate([self.positions, others.positions])
+        return Shapes(positions, np.concatenate([self.normals, others.normals]), self.config)
+
     def badness(self, faces: Int64Array) -> Float64Array:
         """Square of the longest side over the area seen along the normal, of each face (m, 3).
 
         2.3 at best; `SliverConfig.turned` at most, and where that area is not above 0.
         """
-        a, b, c = self.positions[faces].transpose(1, 0, 2)
-        longest = np.max([_squares(b - a), _squares(c - b), _squares(a - c)], axis=0)
-        normals = self.normals[faces].sum(axis=1)
-        normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-12)
-        seen = _dots(np.cross(b - a, c - a), normals) / 2
+        a, b, c = (self.positions[faces[:, corner]] for corner in range(3))
+        ab, bc, ca = b - a, c - b, a - c
+        longest = np.maximum(np.maximum(_squares(ab), _squares(bc)), _squares(ca))
+        normals = self.normals[faces[:, 0]] + self.normals[faces[:, 1]] + self.normals[faces[:, 2]]
+        lengths = np.maximum(np.sqrt(_squares(normals)), 1e-12)
+        seen = _dots(np.cross(ca, ab), normals) / (2 * lengths)
         most = self.config.turned
         return np.where(seen * most > longest, longest / np.maximum(seen, 1e-300), most)
 
@@ -48,7 +54,7 @@ class Shapes:
 
 @dataclass(frozen=True)
 class Collapses:
-    """Vertices (k,) that go into others (k,), what that gains, and whom it concerns.
+    """Vertices (k,) that others (k,) replace, what that gains, and whom it concerns.
 
     owners, claims  (j,) numbers of collapses, and a vertex that nothing else may change
     """
@@ -78,19 +84,30 @@ def collapses(shapes: Shapes, wedges: Wedges, sides: Int64Array) -> Collapses:
     """Those of the half-edges `sides` (s,), either way, that make things better."""
     both = np.concatenate([sides, wedges.twins[sides]])
     both = both[both >= 0]
-    removed, target = wedges.starts[both], wedges.ends[both]
+    return replacements(shapes, wedges, both, wedges.ends[both])
+
+
+def replacements(
+    shapes: Shapes, wedges: Wedges, half_edges: Int64Array, target: Int64Array
+) -> Collapses:
+    """Those of the vertices that half-edges (s,) start at which are better replaced by `target`.
+
+    target: (s,) the half-edges' ends, or vertices of no face yet.
+    """
+    removed, count = wedges.starts[half_edges], len(half_edges)
     owners, ring = wedges.around(removed)
     before = wedges.faces[ring // 3]
-    linked = wedges.linked(wedges.ends[ring], target[owners])
-    sound = np.bincount(owners, linked, minlength=len(both)) == 2
     after = np.where(before == removed[owners, None], target[owners, None], before)
     goes = (before == target[owners, None]).any(axis=1)
     old, new = shapes.badness(before), np.where(goes, 0, shapes.badness(after))
-    gain = np.bincount(owners, old**2 - new**2, minlength=len(both)).astype(np.float64)
-    give, lifted = np.zeros(len(both)), np.zeros(len(both))
+    gain = np.bincount(owners, old**2 - new**2, minlength=count).astype(np.float64)
+    give, lifted = np.zeros(count), np.zeros(count)
     np.maximum.at(give, owners, shapes.give(before))
     np.maximum.at(lifted, owners, _lifts(shapes, before, removed[owners], target[owners], old))
-    kept = _keeps_borders(shapes, wedges, both, owners, ring, give)
+    kept = _keeps_borders(shapes, wedges, half_edges, target, owners, ring, give)
+    linked = wedges.linked(wedges.ends[ring], target[owners])
+    shared = np.bincount(owners, linked, minlength=count)
+    sound = (shared == 2) | (target != wedges.ends[half_edges])
     better = np.flatnonzero(kept & sound & (gain > 0) & (lifted <= give))
     return _chosen(Collapses(removed, target, gain, owners, wedges.ends[ring]), better)
 
@@ -110,24 +127,24 @@ def _keeps_borders(
     shapes: Shapes,
     wedges: Wedges,
     half_edges: Int64Array,
+    target: Int64Array,
     owners: Int64Array,
     ring: Int64Array,
     give: Float64Array,
 ) -> BoolArray:
-    """Whether the borders of charts stay where they are when a half-edge's start goes to its end.
+    """Whether the borders of charts stay where they are when half-edges' starts go to `target`.
 
     A vertex within a chart is free; one on a border goes along it, if that is straight enough; one
     where borders meet or the surface ends stays. owners, ring: the half-edges that leave each.
     """
-    removed, target = wedges.starts[half_edges], wedges.ends[half_edges]
-    count = len(half_edges)
+    removed, count = wedges.starts[half_edges], len(half_edges)
     ends = np.bincount(owners, wedges.twins[ring] < 0, minlength=count) > 0
     border = wedges.border[ring]
     meeting = np.bincount(owners, border, minlength=count)
     # Where two border edges leave a vertex, the sum of their ends tells the other one's.
     sums = np.bincount(owners, np.where(border, wedges.ends[ring], 0), minlength=count)
     along = (meeting == 2) & wedges.border[half_edges]
-    beyond = np.where(along, sums.astype(np.int64) - target, target)
+    beyond = np.where(along, sums.astype(np.int64) - wedges.ends[half_edges], target)
     start, end = shapes.positions[target], shapes.positions[beyond]
     strays = _distances(shapes.positions[removed], start, end) > give
     return ~ends & ((meeting == 0) | (along & ~strays))

@@ -7,7 +7,7 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from nispcodec.core.arrays import Float64Array, Int32Array, Int64Array
+from nispcodec.core.arrays import Float32Array, Float64Array, Int32Array, Int64Array
 from nispcodec.core.network import Network
 from nispcodec.extract.config import SliverConfig
 from nispcodec.extract.isosurface import Surface, extract
@@ -16,6 +16,7 @@ from nispcodec.extract.simplify import deviation, simplified
 from nispcodec.extract.sliver_operations import Shapes
 from nispcodec.extract.slivers import without_slivers
 from nispcodec.extract.vertex_charts import vertex_charts
+from nispcodec.extract.wedges import Wedges
 from nispcodec.infer.evaluate import gradient
 from tests import tiny
 from tests.extract.surfaces import areas, assert_closed
@@ -49,6 +50,21 @@ def borders(surface: Surface, charts: Int32Array) -> Int64Array:
     return np.flatnonzero(np.bincount(pairs[:, 0], minlength=len(surface.positions)) > 1)
 
 
+def border_edges(surface: Surface, charts: Int32Array) -> Int64Array:
+    """The vertices (2, e) at both ends of the edges where charts meet."""
+    wedges = Wedges.of(surface.faces.astype(np.int64), charts)
+    return np.stack([wedges.starts[wedges.border], wedges.ends[wedges.border]])
+
+
+def to_segments(points: Float64Array, starts: Float32Array, ends: Float32Array) -> Float64Array:
+    """The distance of each point (k, 3) to the nearest of the segments (e, 3)."""
+    along = (ends - starts).astype(np.float64)
+    off = points[:, None] - starts
+    shares = np.clip((off * along).sum(axis=2) / (along**2).sum(axis=1), 0, 1)
+    distances: Float64Array = np.linalg.norm(off - shares[..., None] * along, axis=2).min(axis=1)
+    return distances
+
+
 @pytest.mark.parametrize("faces", [2000, 600])
 @pytest.mark.parametrize("shape", SHAPES)
 @pytest.mark.parametrize("seed", range(2))
@@ -59,8 +75,7 @@ def test_slivers_go_and_the_surface_stays(shape: str, seed: int, faces: int) -> 
     assert bad
     after, kept = without_slivers(network, before, charts)
     left = badness(network, after)
-    assert (left > SliverConfig.aspect).sum() <= 1 + bad / 10
-    assert left.max() < 4 * SliverConfig.aspect
+    assert left.max() <= SliverConfig.aspect
     assert_closed(after.faces)
     assert len(after.faces) <= len(before.faces)
     assert len(np.unique(after.faces)) == len(after.positions)
@@ -78,10 +93,9 @@ def test_borders_keep_their_course(chart: str) -> None:
     network = tiny.sphere()
     before, charts = cut(network, CHARTS[chart](), 800)
     after, kept = without_slivers(network, before, charts)
-    rows = {tuple(row) for row in before.positions[borders(before, charts)].tolist()}
-    left = [tuple(row) for row in after.positions[borders(after, kept)].tolist()]
-    assert left
-    assert rows.issuperset(left)
+    left = after.positions[borders(after, kept)].astype(np.float64)
+    assert len(left)
+    assert to_segments(left, *before.positions[border_edges(before, charts)]).max() < 1e-6
     # Where three charts meet they still do.
     assert set(np.unique(kept)) == set(np.unique(charts))
 
@@ -114,6 +128,22 @@ def test_a_fold_goes() -> None:
     after, _ = without_slivers(UP, fold, np.zeros(4, np.int32))
     assert badness(UP, after).max() < 10
     assert areas(after.positions, after.faces).sum() == pytest.approx(1)
+
+
+def test_a_vertex_slides_where_neither_collapse_nor_flip_helps() -> None:
+    # Its neighbors are the corners of a star, which none of them sees all of.
+    star = [(0.1, 0.0), (0.7, 0.7), (0.1, 0.2), (-0.8, 0.6), (0.1, -0.1)]
+    spokes = [(0, 1, 2), (0, 2, 3), (0, 3, 4), (0, 4, 5), (0, 5, 1)]
+    needle, charts = flat([(0.0, 0.0), *star], spokes), np.zeros(5, np.int32)
+    assert badness(UP, needle).max() > 100
+    stuck, _ = without_slivers(UP, needle, charts, SliverConfig(slides=()))
+    assert np.array_equal(stuck.faces, needle.faces)
+    after, _ = without_slivers(UP, needle, charts)
+    assert badness(UP, after).max() < SliverConfig.aspect
+    assert {tuple(point) for point in needle.positions[1:]} <= {*map(tuple, after.positions)}
+    assert areas(after.positions, after.faces).sum() == pytest.approx(
+        areas(needle.positions, needle.faces).sum()
+    )
 
 
 def test_what_cannot_be_mended_is_left_as_it_is() -> None:
