@@ -94,7 +94,7 @@ def test_who_brings_a_mesh_is_told_how_to_get_a_nisp(mesh: Path, command: str) -
     refused(result, f"nisp: error: {mesh}: this is no .nisp", "`nisp encode` makes one of a mesh")
 
 
-@pytest.mark.parametrize("arguments", [("encode", "in", "-o", "o"), ("compare", "in", "in")])
+@pytest.mark.parametrize("arguments", [("encode", "in", "-o", "o.nisp"), ("compare", "in", "in")])
 def test_who_brings_a_folder_is_told_of_batch(folder: Path, arguments: tuple[str, ...]) -> None:
     (folder / "in").mkdir()
     refused(nisp(*arguments), "nisp: error: in: expected a file, found a folder", "`nisp batch`")
