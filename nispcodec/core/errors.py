@@ -23,6 +23,21 @@ class FitError(NispError):
     """The networks could not be fitted to the asset, or not to the size or error asked for."""
 
 
+class TargetSizeError(NispError):
+    """A size that was asked for is too small: `least` bytes can be written, `found` were asked."""
+
+    def __init__(self, least: int, found: float) -> None:
+        super().__init__(
+            f"target size: expected at least {least:,} bytes for this asset, found {found:,.0f}"
+        )
+        self.least = least
+        self.found = found
+
+    def __reduce__(self) -> tuple[object, ...]:
+        # An exception is made anew from its text, when it comes from another process.
+        return type(self), (self.least, self.found)
+
+
 class QueryError(NispError):
     """A query makes no sense: shape, dtype or frame of points, a chart, a view, a channel."""
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 from nispcodec.core.document import Document, Field
-from nispcodec.core.errors import FitError, NispError
+from nispcodec.core.errors import FitError, TargetSizeError
 from nispcodec.core.mesh_part import MeshPart
 from nispcodec.encode.bodies import Sorted
 from nispcodec.encode.config import EncodeConfig, Tuning
@@ -98,7 +98,7 @@ class Choice:
         """
         forms, found = self._forms, self._of_target_size
         near = max(forms.negligible, forms.surely_nearer * distance)
-        fits = found.size + self._besides <= (self._config.target_size or 0.0)
+        fits = self._triangle_bytes <= (self._config.target_size or 0.0)
         return fits and forms.is_sound(found.errors) and found.errors.distance <= near
 
     @cached_property
@@ -111,6 +111,11 @@ class Choice:
     def _of_target_size(self) -> Candidate:
         """Triangles of the target size; the smallest where that is too small."""
         return self._form.of_size((self._config.target_size or 0.0) - self._besides)
+
+    @property
+    def _triangle_bytes(self) -> int:
+        """Bytes of a file of these, without its images."""
+        return self._besides + self._of_target_size.size
 
     def _better_split(self, size: float, distance: float) -> Split | None:
         """Halves that promise to take clearly fewer bytes than networks or triangles alone.
@@ -173,7 +178,13 @@ class Choice:
         return Chosen(field, errors, own_bytes(meshes))
 
     def _of_least_loss(self, loss: Loss) -> Candidate:
-        return self._form.of_least_loss(lambda found: loss(self._document(None, found.parts)))
+        """Of all that were looked at; where none has a finite loss, those of the target size."""
+
+        def lost(found: Candidate) -> float:
+            return loss(self._document(None, found.parts))
+
+        found = self._form.of_least_loss(lost)
+        return self._wanted() if self._config.target_size and lost(found) == math.inf else found
 
     def _instead(self, field: Document, size: int, errors: Errors) -> Chosen | None:
         """Triangles in place of a field that makes up surface, unless they take many more bytes.
@@ -194,11 +205,23 @@ class Choice:
         fits = own_bytes(meshes) <= most
         return Chosen(meshes, found.errors, size, made_up) if fits else None
 
+    def without_networks(self, refused: TargetSizeError) -> None:
+        """Leave an asset whose networks do not fit the target size to triangles.
+
+        Raises TargetSizeError, for the smaller of both, where these do not fit either, and that of
+        the networks where only these were asked for.
+        """
+        if not self._open:
+            raise refused
+        if self._triangle_bytes > refused.found:
+            least = min(refused.least, self._triangle_bytes)
+            raise TargetSizeError(least, refused.found) from refused
+
     def triangles(self) -> Chosen:
         """The asset as triangles, as near as the preset or the target asks.
 
-        Raises FitError for a target error that they miss, NispError for a target size that is too
-        small.
+        Raises FitError for a target error that they miss, TargetSizeError for a target size that is
+        too small.
         """
         found = self._of_least_loss(self._loss) if self._loss else self._wanted()
         return Chosen(self._document(None, found.parts), found.errors, self._field_bytes)
@@ -239,12 +262,8 @@ class Choice:
             return found
         if not config.target_size:
             return self._form.best(self._nearest, self._worth * self._field_bytes or math.inf)
-        least = self._besides + self._of_target_size.size
-        if least > config.target_size:
-            raise NispError(
-                f"target size: expected at least {least:,} bytes for this asset's "
-                f"triangles, found {config.target_size:,.0f}"
-            )
+        if self._triangle_bytes > config.target_size:
+            raise TargetSizeError(self._triangle_bytes, config.target_size)
         return self._of_target_size
 
     @property

@@ -268,9 +268,7 @@ class TotalConfig:
     views            pictures around the asset, by which errors are told ...
     size             ... and the pixels of their sides
     qualities        of images whose error is measured; between them it is interpolated
-    least_geometry   bytes that no surface does without
-    filled           share of what the smallest images leave that geometry is fitted to at most: a
-                     fit may be that much larger than it is asked to be
+    scarce           bytes for geometry from which down the least that it takes is found out first
     field_slope      of the squared error of pictures over the bytes of networks, as logarithms
     octaves          by which the bytes of networks may differ from what the preset takes
     worth_a_fit      share of the expected error from which down another split is tried
@@ -281,8 +279,7 @@ class TotalConfig:
     views: int = 8
     size: int = 512
     qualities: tuple[int, ...] = (1, 20, 45, 70, 90, 100)
-    least_geometry: float = 500
-    filled: float = 0.95
+    scarce: float = 5000
     field_slope: float = 0.5
     octaves: tuple[float, ...] = (-2, -1.5, -1, -0.5, 0.5, 1, 1.5, 2)
     worth_a_fit: float = 0.85

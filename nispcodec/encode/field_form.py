@@ -66,7 +66,7 @@ class FieldForm:
         """The networks: published ones, or sine networks as large as the preset or target asks.
 
         None where a preset's, whose bytes and probe error are told to `wanted`, are not.
-        Raises FitError when a network does not converge.
+        Raises FitError when a network does not converge, TargetSizeError for too small a size.
         """
         problem, config = self._problem, self.config
         self.progress(Progress(stage="fit"))

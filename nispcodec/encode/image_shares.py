@@ -53,7 +53,7 @@ class ImageShares:
 
     @property
     def least(self) -> int:
-        """Bytes at the lowest quality."""
+        """Bytes at the lowest quality, which are no more than those of the files as they came."""
         return sum(self._bytes(kind, LEAST) for kind in (0, 1))
 
     @property

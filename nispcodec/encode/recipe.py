@@ -8,10 +8,11 @@ from functools import partial
 
 from nispcodec.core.asset import TexturedMesh
 from nispcodec.core.document import Document, Field
+from nispcodec.core.errors import TargetSizeError
 from nispcodec.core.mesh_part import MeshPart
 from nispcodec.core.progress import Listener, Progress, silent
 from nispcodec.encode.appearance import appearance
-from nispcodec.encode.choice import Choice, Chosen, Loss
+from nispcodec.encode.choice import Choice, Chosen, Loss, Made
 from nispcodec.encode.config import EncodeConfig, Tuning
 from nispcodec.encode.far_surface import far_warnings
 from nispcodec.encode.field_form import FieldForm
@@ -69,14 +70,15 @@ def _encoded(
     field = FieldForm(analysis, config, tuning, engine, progress)
 
     def document(held: Field | None = None, parts: tuple[MeshPart, ...] = ()) -> Document:
-        return Document(frame, materials, textures, held, parts, unmeasured(config))
+        info = unmeasured(config, held is not None)
+        return Document(frame, materials, textures, held, parts, info)
 
     choice = Choice(form, config, tuning, partial(split, field), document, loss)
     if config.geometry == "mesh" or choice.settled:
         chosen = choice.triangles()
         info = measured(chosen, analysis, config)
         return _finished(chosen, info, form, mesh.name, config, tuning, progress)
-    held = field.fit(document, choice.wants_field)
+    held = _fitted(field, document, choice)
     parts: tuple[MeshPart, ...] = ()
     if choice.split:
         field = choice.split.field
@@ -88,6 +90,15 @@ def _encoded(
         chosen = choice.triangles()
     info = measured(chosen, analysis, config, engine.name, field.sets)
     return _finished(chosen, info, form, mesh.name, config, tuning, progress)
+
+
+def _fitted(field: FieldForm, document: Made, choice: Choice) -> Field | None:
+    """The networks; None where triangles are to be taken, alone or beside other networks."""
+    try:
+        return field.fit(lambda held: document(held, ()), choice.wants_field)
+    except TargetSizeError as refused:
+        choice.without_networks(refused)
+        return None
 
 
 def _finished(

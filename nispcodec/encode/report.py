@@ -47,15 +47,18 @@ def measured(
     return found
 
 
-def unmeasured(config: EncodeConfig) -> dict[str, str | int | float | bool]:
-    """A report of at least as many bytes as `measured` will give: a size that is met counts it."""
+def unmeasured(config: EncodeConfig, field: bool) -> dict[str, str | int | float | bool]:
+    """A report of at least as many bytes as `measured` will give: a size that is met counts it.
+
+    `field` is whether the file has one.
+    """
     names = (
         "hidden_share", "open_surface_share", "distance_error", "made_up_share", "lost_share",
-        "chart_accuracy", "uv_error_median", "uv_error_mean", "other_form_bytes",
-        "other_form_made_up_share",
+        "uv_error_median", "uv_error_mean", "other_form_bytes", "other_form_made_up_share",
     )  # fmt: skip
     found: dict[str, str | int | float | bool] = {"preset": config.preset, "seed": config.seed}
-    return found | {"engine": "native"} | dict.fromkeys(names, 1.23e-5)
+    found |= dict.fromkeys(names, 1.23e-5)
+    return found | {"engine": "native", "chart_accuracy": 1.23e-5} if field else found
 
 
 def _chart_accuracy(field: Field, sets: TrainingSets) -> float:

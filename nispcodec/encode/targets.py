@@ -10,7 +10,7 @@ from functools import cached_property
 import numpy as np
 
 from nispcodec.core.document import Document
-from nispcodec.core.errors import FitError, NispError
+from nispcodec.core.errors import FitError, NispError, TargetSizeError
 from nispcodec.core.network import Network, NetworkSpec
 from nispcodec.core.progress import Listener, Progress
 from nispcodec.format import inspect, pack
@@ -106,15 +106,12 @@ def fit_to_size(
 ) -> Networks:
     """Networks for a file of at most `size` bytes, textures apart; `document` is its content.
 
-    None if they are not wanted, as in `fit_with_preset`. Raises NispError, before anything is
-    trained, when the size is too small for the asset.
+    None if they are not wanted, as in `fit_with_preset`. Raises TargetSizeError, before anything is
+    trained, when the size is too small for the asset's tables and the smallest networks.
     """
     besides, least = _least_bytes(context.problem, document)
     if size < least:
-        raise NispError(
-            f"target size: expected at least {least:,.0f} bytes for this asset (its tables and the "
-            f"smallest networks), found {size:,.0f}"
-        )
+        raise TargetSizeError(math.ceil(least), size)
     if not wanted(size, context.probed["sdf"]):
         return {}
     hidden, budgets = _shared(context, size - besides)
@@ -138,7 +135,7 @@ def _least_bytes(
     """Of a file with the smallest networks: what is not networks, and all of it."""
     sizing = problem.config.sizing
     tiny = problem.specs(smallest(problem.networks, sizing))
-    blank = {name: _blank(spec) for name, spec in tiny.items()}
+    blank = {name: blank_network(spec) for name, spec in tiny.items()}
     besides = _bytes(document(blank), NETS, TXTR)
     return besides, besides + bytes_of(tiny, sizing)
 
@@ -188,7 +185,8 @@ def fit_to_error(context: FitContext, wanted: float) -> Networks:
     return networks
 
 
-def _blank(spec: NetworkSpec) -> Network:
+def blank_network(spec: NetworkSpec) -> Network:
+    """A network whose weights are all 0."""
     return Network(spec, {name: np.zeros(shape, np.float32) for name, shape in spec.shapes.items()})
 
 

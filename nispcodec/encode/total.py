@@ -2,22 +2,24 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from math import inf
 
 import numpy as np
 
 from nispcodec.core.arrays import Float32Array
 from nispcodec.core.asset import Texture, TexturedMesh
-from nispcodec.core.document import Document
-from nispcodec.core.errors import NispError
+from nispcodec.core.document import ChartTable, Document, Field, Frame
+from nispcodec.core.errors import NispError, TargetSizeError
 from nispcodec.core.extras import require
-from nispcodec.core.progress import Listener, Progress
-from nispcodec.encode.choice import Loss
+from nispcodec.core.network import NetworkSpec
+from nispcodec.core.progress import Listener, Progress, silent
+from nispcodec.encode.choice import Loss, own_bytes
 from nispcodec.encode.compact_images import compact_images
 from nispcodec.encode.config import EncodeConfig, TotalConfig
 from nispcodec.encode.image_shares import ImageShares
+from nispcodec.encode.targets import blank_network
 from nispcodec.format import pack
 from nispcodec.metrics.psnr import psnr
 from nispcodec.model import NispModel
@@ -39,8 +41,8 @@ def encode_to_total(
 
     Pictures decide, with images in the bytes that are left: which triangles are best, and whether
     networks are better. Where these are, their size is what the preset has, or another whose
-    pictures are expected to lose clearly less and do. Raises NispError for a total that leaves the
-    geometry too little; before anything is fitted, if the images alone do not allow it.
+    pictures are expected to lose clearly less and do. Raises NispError, before anything is fitted,
+    for a total that is less than images at the lowest quality and the smallest geometry take.
     """
     if not mesh.textures:
         how = replace(config, target_total=None, target_size=config.target_total)
@@ -49,10 +51,12 @@ def encode_to_total(
     progress(Progress(stage="textures", overall=0.0))
     shares = ImageShares(compact_images(mesh))
     total = float(config.target_total or 0)
-    _expect_possible(total, shares.least, tuning)
+    fixed = shares.least + _names_of_images(mesh, shares) + tuning.measured_bytes
+    if total - fixed < tuning.scarce:
+        _expect_possible(config, total - fixed, geometry)
     pictures = Pictures(mesh, tuning)
     shares.measure(tuning.qualities, total, pictures.error_of_textures)
-    totals = _Totals(mesh, config, tuning, geometry, shares, pictures, total)
+    totals = _Totals(mesh, config, tuning, geometry, shares, pictures, total, total - fixed)
     splits = totals.splits(progress)
     progress(Progress(stage="textures", overall=tuning.done[-1]))
     return min(map(totals.whole, splits), key=lambda each: each[1])[0]
@@ -92,7 +96,10 @@ class Split:
 
 @dataclass(frozen=True)
 class _Totals:
-    """One asset and everything that a split of its bytes depends on."""
+    """One asset and everything that a split of its bytes depends on.
+
+    `room` is what a geometry may take, undressed.
+    """
 
     mesh: TexturedMesh
     config: EncodeConfig
@@ -101,6 +108,7 @@ class _Totals:
     shares: ImageShares
     pictures: Pictures
     total: float
+    room: float
 
     def splits(self, progress: Listener) -> list[Split]:
         """The split of the preset's geometry, and one that is expected to be better, if any."""
@@ -117,14 +125,10 @@ class _Totals:
 
     def split(self, size: float, progress: Listener) -> Split:
         """A geometry of `size` bytes; 0: as the preset has it, or as large as there is room."""
-        found, room = self._document(size, progress), self.total - self.shares.least
-        if not size and self._own(found) > room:
-            found = self._document(self.tuning.filled * room, progress)
-        if self._own(found) > room:
-            raise NispError(
-                f"target total: {room:,.0f} bytes are left for geometry: expected at least "
-                f"{self._own(found):,}"
-            )
+        found = self._document(size, progress)
+        if not size and own_bytes(found) > self.room:
+            found = self._document(self.room, progress)
+        found = self._dressed(found)
         progress(Progress(stage="surface", overall=1.0))
         scene = self._scene(found)
         return Split(found, self._own(found), self.pictures.error(scene), scene)
@@ -133,7 +137,7 @@ class _Totals:
         """About the squared error of pictures of a geometry with images in the bytes it leaves."""
         dressed = self._dressed(document)
         images = self.shares.error(self.total - self._own(dressed))
-        return images + self.pictures.error(self._scene(dressed)) if images < inf else inf
+        return images + self.pictures.error(self._scene(dressed)) if images < math.inf else math.inf
 
     def better_size(self, found: Split) -> float:
         """Bytes of networks that are expected to be clearly better than those of a split, or 0."""
@@ -162,16 +166,10 @@ class _Totals:
         return NispModel(document), error
 
     def _document(self, size: float, progress: Listener) -> Document:
-        config = replace(self.config, target_total=None, target_size=size or None, textures=False)
         try:
-            found = self.geometry(config, progress, self.loss).document
-        except NispError as why:
-            if not size:
-                raise
-            raise NispError(
-                f"target total: {size:,.0f} bytes are left for geometry: {why}"
-            ) from why
-        return self._dressed(found)
+            return self.geometry(_of_size(self.config, size), progress, self.loss).document
+        except TargetSizeError as refused:
+            raise _too_small(self.total, self.room, refused) from refused
 
     def _dressed(self, document: Document) -> Document:
         return replace(document, materials=self.mesh.materials, textures=self.mesh.textures)
@@ -184,13 +182,36 @@ class _Totals:
         return len(pack(replace(document, textures=self.shares.smallest))) - self.shares.least
 
 
-def _expect_possible(total: float, images: int, tuning: TotalConfig) -> None:
-    least = images + tuning.least_geometry
-    if total < least:
-        raise NispError(
-            f"target total: expected at least {least:,.0f} bytes, {images:,} of them for this "
-            f"asset's images at the lowest quality, found {total:,.0f}; smaller images take less"
-        )
+def _of_size(config: EncodeConfig, size: float) -> EncodeConfig:
+    """How the geometry alone is encoded; 0: of any size."""
+    return replace(config, target_total=None, target_size=size or None, textures=False)
+
+
+def _names_of_images(mesh: TexturedMesh, shares: ImageShares) -> int:
+    """Bytes that images add to a file besides their own."""
+    bare = tuple(replace(material, maps={}) for material in mesh.materials)
+    charts = ChartTable(np.zeros(1, np.int32), np.zeros(1, np.bool_))
+    field = Field(charts, blank_network(NetworkSpec((1,), 1)))
+    undressed = Document(Frame((0.0, 0.0, 0.0), 1.0), bare, (), field)
+    dressed = replace(undressed, materials=mesh.materials, textures=shares.smallest)
+    return own_bytes(dressed) - own_bytes(undressed)
+
+
+def _expect_possible(config: EncodeConfig, room: float, geometry: Geometry) -> None:
+    """Raises NispError for a total that leaves less room than the smallest geometry takes."""
+    try:
+        geometry(_of_size(config, 1.0), silent, None)
+    except TargetSizeError as refused:
+        if refused.least > room:
+            raise _too_small(float(config.target_total or 0), room, refused) from refused
+
+
+def _too_small(total: float, room: float, refused: TargetSizeError) -> NispError:
+    images = math.ceil(total - room)
+    return NispError(
+        f"target total: expected at least {images + refused.least:,} bytes for this asset, "
+        f"{images:,} of them for images at the lowest quality, found {total:,.0f}"
+    )
 
 
 def _within(listen: Listener, start: float, end: float) -> Listener:

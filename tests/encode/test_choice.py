@@ -12,7 +12,7 @@ import pytest
 
 from nispcodec import EncodeConfig
 from nispcodec.core.document import Document, Field
-from nispcodec.core.errors import FitError, NispError
+from nispcodec.core.errors import FitError, TargetSizeError
 from nispcodec.core.mesh_part import MeshPart
 from nispcodec.core.network import NetworkSpec
 from nispcodec.encode.bodies import Sorted
@@ -238,10 +238,50 @@ def test_targets_that_triangles_miss_are_errors() -> None:
         choice(Told(), geometry="mesh", target_error=1e-6).triangles()
     form = Told(of_size=candidate(), fewest=candidate())
     small = choice(form, geometry="mesh", target_size=20)
-    with pytest.raises(NispError, match="target size: expected at least"):
+    with pytest.raises(TargetSizeError, match="target size: expected at least") as refused:
         small.triangles()
+    assert refused.value.least == own_bytes(as_mesh(None, (PART,)))
     wide = choice(form, geometry="mesh", target_size=20_000)
     assert wide.triangles().document.meshes == (PART,)
+
+
+@pytest.mark.parametrize("networks", [50, 50_000])
+def test_without_networks_triangles_that_fit_are_left_and_else_the_least_of_both_is_told(
+    networks: int,
+) -> None:
+    form, triangles = (
+        Told(of_size=candidate(), fewest=candidate()),
+        own_bytes(as_mesh(None, (PART,))),
+    )
+    for size in (triangles, triangles - 1):
+        found, refused = choice(form, target_size=size), TargetSizeError(networks, size)
+        if size == triangles:
+            found.without_networks(refused)
+            assert found.triangles().document.meshes == (PART,)
+            continue
+        with pytest.raises(TargetSizeError) as told:
+            found.without_networks(refused)
+        assert (told.value.least, told.value.found) == (min(networks, triangles), size)
+
+
+def test_who_asks_for_networks_is_told_their_least() -> None:
+    form, refused = Told(of_size=candidate(), fewest=candidate()), TargetSizeError(50_000, 40_000)
+    with pytest.raises(TargetSizeError) as told:
+        choice(form, geometry="field", target_size=40_000).without_networks(refused)
+    assert told.value is refused
+
+
+def test_where_nothing_has_a_finite_loss_triangles_have_the_target_size() -> None:
+    small: Any = SimpleNamespace(**{**vars(candidate()), "errors": OFF})
+    form: Any = Told(of_least_loss=candidate(), of_size=small, fewest=candidate())
+    for lost, errors in ((math.inf, OFF), (1.0, EXACT)):
+        how = EncodeConfig(geometry="mesh", target_size=10 * SIZE)
+
+        def loss(document: Document, lost: float = lost) -> float:
+            return lost
+
+        found = Choice(form, how, TUNING, lambda _: None, as_mesh, loss)
+        assert found.triangles().errors == errors
 
 
 def test_images_do_not_count() -> None:

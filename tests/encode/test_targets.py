@@ -10,7 +10,7 @@ import pytest
 
 from nispcodec import Material, NispError
 from nispcodec.core.document import ChartTable, Document, Field, Frame
-from nispcodec.core.errors import FitError
+from nispcodec.core.errors import FitError, TargetSizeError
 from nispcodec.core.network import Network
 from nispcodec.core.progress import Listener, Progress, silent
 from nispcodec.dataset.recipes import TrainingSets
@@ -98,7 +98,7 @@ def test_targets_out_of_reach_are_errors_before_any_training() -> None:
     def never(tasks: list[Task], listen: Listener) -> Networks:
         raise AssertionError("trained")
 
-    with pytest.raises(NispError, match=r"target size: expected at least \d+ bytes"):
+    with pytest.raises(TargetSizeError, match=r"target size: expected at least \d+ bytes"):
         fit_to_size(fitting(never), 100, document)
     with pytest.raises(NispError, match="target error: expected at least"):
         fit_to_error(fitting(never), 1e-9)

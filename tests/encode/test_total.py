@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from dataclasses import replace
 from functools import cache
@@ -11,7 +12,7 @@ import pytest
 
 from nispcodec.core.asset import Material, TexturedMesh, TextureMap
 from nispcodec.core.document import Document
-from nispcodec.core.errors import NispError
+from nispcodec.core.errors import NispError, TargetSizeError
 from nispcodec.core.progress import Listener, Progress, silent
 from nispcodec.core.texture import image_size
 from nispcodec.encode.choice import Loss
@@ -24,7 +25,7 @@ from tests import tiny
 from tests.encode.test_compact_images import SIDE, noisy
 from tests.geometry.shapes import box_asset
 
-SMALL = TotalConfig(views=2, size=48, qualities=(1, 50, 100), least_geometry=100)
+SMALL = TotalConfig(views=2, size=48, qualities=(1, 50, 100), scarce=0.0)
 NEVER, ALWAYS = replace(SMALL, worth_a_fit=0.0), replace(SMALL, worth_a_fit=1e9)
 
 
@@ -49,7 +50,10 @@ def octahedron() -> Document:
 
 
 class Geometry:
-    """Triangles of a box, or networks, and ballast up to the size that is asked for, or `usual`."""
+    """Triangles of a box, or networks, and ballast up to the size that is asked for, or `usual`.
+
+    Sizes below what it has without ballast are refused.
+    """
 
     def __init__(self, usual: int, made: Callable[[], Document] = box) -> None:
         self.usual, self.made = usual, made
@@ -60,7 +64,10 @@ class Geometry:
     ) -> NispModel:
         self.asked.append(config)
         listen(Progress(stage="triangles", overall=1.0))
-        size = max(0, int(config.target_size or self.usual) - len(pack(self.made())))
+        least = len(pack(self.made()))
+        if config.target_size and config.target_size < least:
+            raise TargetSizeError(least, config.target_size)
+        size = max(0, int(config.target_size or self.usual) - least)
         signs = "".join(map(chr, np.random.default_rng(0).integers(0x21, 0x7E, size)))
         ballast = {f"{start}": signs[start : start + 900] for start in range(0, size, 900)}
         return NispModel(replace(self.made(), info=ballast))
@@ -123,14 +130,24 @@ def test_images_that_have_room_stay_as_they_came() -> None:
     assert document.textures == asset().textures
 
 
-def test_a_total_below_the_smallest_images_is_refused_before_the_work() -> None:
-    geometry = Geometry(600)
-    how = EncodeConfig(target_total=500)
-    with pytest.raises(
-        NispError, match=r"target total: expected at least [\d,]+ bytes, .* found 500"
-    ):
-        encode_to_total(asset(), how, SMALL, geometry, silent)
-    assert geometry.asked == []
+def refused(total: float, tuning: TotalConfig) -> tuple[int, Geometry]:
+    """The least total that a refusal names, and what was asked before."""
+    geometry = Geometry(10_000)
+    how = EncodeConfig(geometry="mesh", target_total=total)
+    with pytest.raises(NispError, match=rf"found {total:,.0f}$") as said:
+        encode_to_total(asset(), how, tuning, geometry, silent)
+    least = re.match(r"target total: expected at least ([\d,]+) bytes", str(said.value))
+    assert least
+    return int(least[1].replace(",", "")), geometry
+
+
+def test_a_total_that_is_too_small_is_told_the_least_and_that_can_be_had() -> None:
+    scarce = replace(NEVER, scarce=5_000)
+    least, geometry = refused(500, scarce)
+    assert [each.target_size for each in geometry.asked] == [1]
+    for tuning in (scarce, NEVER):
+        assert refused(least - 1, tuning)[0] == least
+        assert len(pack(encoded(least, tuning, usual=10_000)[0])) <= least
 
 
 def test_without_images_the_total_is_for_geometry() -> None:
@@ -158,18 +175,6 @@ def test_geometry_that_loses_less_in_pictures_and_leaves_images_more_is_told_apa
     encode_to_total(asset(), how, NEVER, Asked(600), silent)
     small, large, other, none_left = losses
     assert small < large < other < none_left == np.inf
-
-
-def test_too_little_room_for_any_geometry_is_said() -> None:
-    class Large(Geometry):
-        def __call__(
-            self, config: EncodeConfig, listen: Listener, loss: Loss | None = None
-        ) -> NispModel:
-            return super().__call__(replace(config, target_size=5_000), listen, loss)
-
-    how = EncodeConfig(geometry="mesh", target_total=3_000)
-    with pytest.raises(NispError, match=r"bytes are left for geometry: expected at least [\d,]+"):
-        encode_to_total(asset(), how, NEVER, Large(600), silent)
 
 
 def test_progress_never_falls() -> None:

@@ -1,0 +1,46 @@
+"""The least size that a refusal names is one that can be had, and no smaller one is taken."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import pytest
+
+import nispcodec
+from nispcodec import EncodeConfig, NispModel, TexturedMesh
+from nispcodec.core.errors import TargetSizeError
+from nispcodec.core.progress import silent
+from nispcodec.format import pack
+from tests.encode.tunings import small
+from tests.geometry.shapes import box_asset, soup, sphere
+
+pytestmark = pytest.mark.slow
+SHORT = small(3000, 60, 1, 100, 30, lambda_=1e-6)
+
+
+def ball() -> TexturedMesh:
+    return soup(sphere(16))
+
+
+def encoded(mesh: TexturedMesh, size: float, geometry: str) -> NispModel:
+    how = EncodeConfig("fast", geometry=geometry, target_size=size)
+    return nispcodec.encode(mesh, how, silent, SHORT)
+
+
+def least(mesh: TexturedMesh, size: float, geometry: str) -> int:
+    """The size that a refusal names."""
+    with pytest.raises(TargetSizeError) as refused:
+        encoded(mesh, size, geometry)
+    return refused.value.least
+
+
+@pytest.mark.parametrize("shape", [box_asset, ball])
+def test_the_least_size_can_be_had_and_is_that_of_the_smaller_form(
+    shape: Callable[[], TexturedMesh],
+) -> None:
+    mesh = shape()
+    found = {each: least(mesh, 1, each) for each in ("auto", "mesh", "field")}
+    assert found["auto"] == min(found["mesh"], found["field"])
+    assert least(mesh, found["auto"] - 1, "auto") == found["auto"]
+    for geometry, size in found.items():
+        assert len(pack(encoded(mesh, size, geometry).document)) <= size
