@@ -12,11 +12,10 @@ import click
 
 def rate(data: bytes) -> dict[str, int]:
     """The bytes of a container: geometry+UV (networks, tables, header), textures, total."""
-    from nispcodec.format import inspect
-    from nispcodec.format.constants import TXTR
+    from nispcodec.format import own_bytes
 
-    textures = sum(each.stored_length for each in inspect(data) if each.code == TXTR)
-    return {"geometry_uv": len(data) - textures, "textures": textures, "total": len(data)}
+    own = own_bytes(data)
+    return {"geometry_uv": own, "textures": len(data) - own, "total": len(data)}
 
 
 def print_json(value: object) -> None:

@@ -15,11 +15,10 @@ import click
 
 import nispcodec
 from benchmarks.measuring.machine import commit, machine, versions
-from benchmarks.measuring.rate import geometry_bytes
 from benchmarks.measuring.result_file import Record, as_json, write_result
 from nispcodec.core.progress import Progress
 from nispcodec.encode.config import Tuning
-from nispcodec.format import pack
+from nispcodec.format import own_bytes, pack
 from nispcodec.io.load import load_mesh
 from nispcodec.train.config import PaperConfig, TrainConfig
 
@@ -62,7 +61,7 @@ def measure(source: Path, steps: int, keep: Path | None) -> Record:
         "steps": steps,
         "samples_per_network": steps * 2048,
         "seconds": round(time.monotonic() - curve.started, 1),
-        "bytes": geometry_bytes(pack(model.document)),
+        "bytes": own_bytes(pack(model.document)),
         "measured": dict(model.document.info),
         "published": PUBLISHED,
         "curve": {name: points for name, points in curve.points.items() if points},

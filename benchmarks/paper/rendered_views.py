@@ -19,13 +19,13 @@ import numpy as np
 import nispcodec
 from benchmarks.measuring.likeness import mean_likeness
 from benchmarks.measuring.machine import commit, machine, versions
-from benchmarks.measuring.rate import geometry_bytes
 from benchmarks.measuring.result_file import Record, result_so_far, write_result
 from benchmarks.measuring.target import Asked, Target
 from benchmarks.paper.published import VIEWS as PUBLISHED
 from benchmarks.paper.unlit import unlit_mesh, unlit_model
 from nispcodec.core.asset import TexturedMesh
 from nispcodec.encode.config import PRESETS
+from nispcodec.format import own_bytes
 from nispcodec.io.load import load_mesh
 from nispcodec.model import NispModel
 from nispcodec.render.camera import turntable
@@ -64,7 +64,7 @@ def measure(path: Path, source: Path) -> Record:
         "commit": commit(),
         "model": sha256(data).hexdigest(),
         "held_as": " and ".join(form for form, there in forms.items() if there),
-        "bytes": {"geometry_uv": geometry_bytes(data), "total": len(data)},
+        "bytes": {"geometry_uv": own_bytes(data), "total": len(data)},
         "unlit": alike(unlit_mesh(mesh), unlit_model(model)),
         "lit": alike(mesh, model),
     }

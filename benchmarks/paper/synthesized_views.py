@@ -24,7 +24,6 @@ import torch
 import nispcodec
 from benchmarks.measuring.likeness import mean_likeness
 from benchmarks.measuring.machine import commit, machine, versions
-from benchmarks.measuring.rate import geometry_bytes
 from benchmarks.measuring.result_file import Record, result_so_far, write_result
 from benchmarks.measuring.target import Asked, Target
 from benchmarks.paper.nerf import RadianceField
@@ -36,6 +35,7 @@ from benchmarks.paper.view_set import ViewSet, view_set
 from benchmarks.paper.view_training import Drawer, ViewSchedule, drawn, fit_views
 from nispcodec.core.arrays import Float32Array
 from nispcodec.core.atomic_write import write_atomic
+from nispcodec.format import own_bytes
 from nispcodec.io.load import load_mesh
 from nispcodec.render.images import image_bytes
 from nispcodec.render.views import on_white, render_views
@@ -109,7 +109,7 @@ def ours(path: Path, views: ViewSet) -> tuple[Record, Float32Array]:
     record = {
         "model": sha256(data).hexdigest(),
         "bytes": len(data),
-        "geometry_uv": geometry_bytes(data),
+        "geometry_uv": own_bytes(data),
         "views": mean_likeness(views.hidden, shaped),
     }
     return record, shaped

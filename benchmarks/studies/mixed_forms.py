@@ -27,11 +27,11 @@ from benchmarks.measuring.machine import commit, machine, versions
 from benchmarks.measuring.result_file import Record, write_result
 from nispcodec.core.asset import TexturedMesh
 from nispcodec.core.progress import silent
-from nispcodec.encode.choice import own_bytes
 from nispcodec.encode.config import EncodeConfig, Tuning
 from nispcodec.encode.field_form import FieldForm
 from nispcodec.encode.mesh_form import MeshForm
 from nispcodec.encode.split import split
+from nispcodec.format import own_bytes, pack
 from nispcodec.geometry.analysis import analyze
 from nispcodec.train.backend.choice import choose_engine
 
@@ -72,7 +72,7 @@ def made(mesh: TexturedMesh) -> Record:
     document = nispcodec.encode(mesh, config).document
     chosen: Record = {
         "held_as": [*document.networks, *["mesh"] * len(document.meshes)],
-        "bytes": own_bytes(document),
+        "bytes": own_bytes(pack(document)),
         "distance": document.info["distance_error"],
         "uv": document.info.get("uv_error_mean", 0.0),
         "seconds": round(time.process_time() - started, 1),

@@ -141,7 +141,7 @@ class Task:
             none = np.zeros(len(triangles), np.bool_)
             triangles = replace(triangles, creases=None, sheet=none)
         counted = Counted(found.faces, found.inner).only(distinct_corners(found.mesh))
-        return Simplifier.of_kept(triangles, counted, coded_bytes, ladder, 0)
+        return Simplifier.of(triangles, coded_bytes, ladder, 0, counted)
 
     def surface(self, parts: tuple[MeshPart, ...], *, moved: bool = False) -> Surface:
         """Parts in the asset's looks; moved: their vertices onto the field's surface."""

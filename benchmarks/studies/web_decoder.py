@@ -25,8 +25,7 @@ from benchmarks.measuring.build import HERE
 from benchmarks.measuring.model_records import measured, models_options
 from benchmarks.measuring.result_file import Record
 from benchmarks.measuring.target import Asked, Target, asked_of_each
-from nispcodec.format.constants import TXTR
-from nispcodec.format.document import inspect
+from nispcodec.format import own_bytes
 
 RESULTS = Path("benchmarks/results/web_decoder.json")
 WEB = HERE / "web"
@@ -110,9 +109,7 @@ def record(model: Path, original: Path, sizes: Record) -> Record:
     script = HERE / "benchmarks" / "studies" / "web_decoder.mjs"
     run = subprocess.run(["node", script, model], capture_output=True, text=True, check=True)
     found: Record = json.loads(run.stdout)
-    sections = inspect(model.read_bytes())
-    images = sum(each.stored_length for each in sections if each.code == TXTR)
-    without = model.stat().st_size - images
+    without = own_bytes(model.read_bytes())
     return {**found, "page_without_images_bytes": sizes["page_bytes"] + -(-without // 3) * 4}
 
 

@@ -127,11 +127,10 @@ def _verified(model: NispModel) -> bytes:
 
 
 def _rate(data: bytes) -> dict[str, int]:
-    from nispcodec.format import inspect
-    from nispcodec.format.constants import TXTR
+    from nispcodec.format import own_bytes
 
-    textures = sum(each.stored_length for each in inspect(data) if each.code == TXTR)
-    return {"geometry_uv": len(data) - textures, "textures": textures, "total": len(data)}
+    own = own_bytes(data)
+    return {"geometry_uv": own, "textures": len(data) - own, "total": len(data)}
 
 
 def _errors(model: NispModel, mesh: TexturedMesh, compare: bool) -> dict[str, float]:

@@ -14,8 +14,7 @@ from nispcodec.encode.bodies import Sorted
 from nispcodec.encode.config import EncodeConfig, Tuning
 from nispcodec.encode.mesh_form import MeshForm
 from nispcodec.encode.split import Split
-from nispcodec.format import inspect, pack
-from nispcodec.format.constants import TXTR
+from nispcodec.format import own_bytes, pack
 from nispcodec.simplify.errors import Errors
 from nispcodec.simplify.ladder import Candidate
 
@@ -105,7 +104,7 @@ class Choice:
     def _besides(self) -> int:
         """Bytes of a file of triangles besides these."""
         fewest = self._form.fewest()
-        return own_bytes(self._document(None, fewest.parts)) - fewest.size
+        return own_bytes(pack(self._document(None, fewest.parts))) - fewest.size
 
     @cached_property
     def _of_target_size(self) -> Candidate:
@@ -142,7 +141,7 @@ class Choice:
             return Chosen(field, errors, self._estimate)
         if self._loss:
             return self._of_less_loss(field, errors, self._loss)
-        size = own_bytes(field)
+        size = own_bytes(pack(field))
         if errors.made_up.share > self._forms.notable_far:
             instead = self._instead(field, size, errors)
             if instead:
@@ -153,7 +152,7 @@ class Choice:
         if found is None:
             return Chosen(field, errors)
         meshes = replace(field, field=None, meshes=found.parts)
-        other = own_bytes(meshes)
+        other = own_bytes(pack(meshes))
         better = self._is_better((other, found.errors), (size, errors))
         return Chosen(meshes, found.errors, size) if better else Chosen(field, errors, other)
 
@@ -174,8 +173,8 @@ class Choice:
         found = self._of_least_loss(loss)
         meshes = self._document(None, found.parts)
         if loss(meshes) < loss(field):
-            return Chosen(meshes, found.errors, own_bytes(field))
-        return Chosen(field, errors, own_bytes(meshes))
+            return Chosen(meshes, found.errors, own_bytes(pack(field)))
+        return Chosen(field, errors, own_bytes(pack(meshes)))
 
     def _of_least_loss(self, loss: Loss) -> Candidate:
         """Of all that were looked at; where none has a finite loss, those of the target size."""
@@ -202,7 +201,7 @@ class Choice:
         if found is None or not self._forms.is_sound(found.errors):
             return None
         meshes = replace(field, field=None, meshes=found.parts)
-        fits = own_bytes(meshes) <= most
+        fits = own_bytes(pack(meshes)) <= most
         return Chosen(meshes, found.errors, size, made_up) if fits else None
 
     def without_networks(self, refused: TargetSizeError) -> None:
@@ -282,9 +281,3 @@ class Choice:
     def _open(self) -> bool:
         config = self._config
         return config.geometry == "auto" and config.preset != "paper" and not config.prune
-
-
-def own_bytes(document: Document) -> int:
-    """Bytes of a file, without its images."""
-    data = pack(document)
-    return len(data) - sum(each.stored_length for each in inspect(data) if each.code == TXTR)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import cached_property, partial
 
 from nispcodec.core.asset import TexturedMesh
@@ -15,15 +15,14 @@ from nispcodec.encode.bodies import Sorted, sort_bodies
 from nispcodec.encode.config import FormConfig
 from nispcodec.encode.mesh_size import fewest, nearest_of_size
 from nispcodec.encode.part_errors import part_errors
-from nispcodec.encode.rungs import Rungs
+from nispcodec.encode.rungs import Cost, Rungs
 from nispcodec.extract.meshing import default_resolution, expected_faces, textured_mesh
 from nispcodec.format import mesh
 from nispcodec.geometry.analysis import Analysis
 from nispcodec.geometry.shown import Shown, shown
 from nispcodec.metrics.paint import Paint
-from nispcodec.simplify.closest import Tree
 from nispcodec.simplify.descent import least_loss
-from nispcodec.simplify.errors import Counted, Errors, Original
+from nispcodec.simplify.errors import Counted, Errors
 from nispcodec.simplify.ladder import Candidate, Simplifier
 from nispcodec.simplify.search import best_for
 from nispcodec.simplify.triangles import Triangles, distinct_corners
@@ -32,6 +31,26 @@ from nispcodec.simplify.triangles import Triangles, distinct_corners
 def coded_bytes(parts: tuple[MeshPart, ...]) -> int:
     """Bytes that parts add to a file."""
     return len(mesh.encode(parts))
+
+
+@dataclass(frozen=True)
+class Rest:
+    """All that holds an asset beside a candidate.
+
+    size, errors  bytes, and errors of what they hold
+    share         of the asset's area that the candidate has
+    """
+
+    size: float
+    errors: Errors
+    share: float
+
+    def whole(self, candidate: Candidate) -> tuple[float, Errors]:
+        """Bytes and errors of the asset."""
+        return self.size + candidate.size, candidate.errors.beside(self.errors, self.share)
+
+
+NOTHING = Rest(0.0, Errors(0.0, 0.0, 0.0, 0.0), 1.0)
 
 
 class MeshForm:
@@ -52,7 +71,7 @@ class MeshForm:
         """The maker of candidates, from the faces that can be seen."""
         triangles, counted = self._triangles
         config, seed = self._config.ladder, self._seed
-        return Simplifier.of_kept(triangles, counted, coded_bytes, config, seed, self._paint)
+        return Simplifier.of(triangles, coded_bytes, config, seed, counted, self._paint)
 
     @cached_property
     def _paint(self) -> Paint:
@@ -71,15 +90,6 @@ class MeshForm:
         return triangles, counted.only(distinct_corners(found.mesh))
 
     @cached_property
-    def _original(self) -> Original:
-        """Hidden faces are in it, too: networks and triangles side by side hide nothing."""
-        triangles, counted = self._triangles
-        samples = self._config.ladder.samples
-        return Original.of(
-            triangles, Tree(triangles.corners), samples, self._seed, counted, None, self._paint
-        )
-
-    @cached_property
     def _rungs(self) -> Rungs:
         config, slope = self._config, self._config.bytes_slope
         per_face = config.bytes_per_face
@@ -88,16 +98,12 @@ class MeshForm:
     def errors(self, document: Document) -> Errors:
         """How far the surface that a document decodes to is off."""
         self._progress(Progress(stage="surface"))
-        return self._original_of(document).errors(self._decoded(document))
+        return self.simplifier.original.errors(self._decoded(document))
 
     def part_errors(self, document: Document) -> tuple[tuple[float, float], ...]:
         """The mean distance to the original, and the mean UV error, of each part of a document."""
-        original, samples = self._original_of(document), self._config.ladder.samples
+        original, samples = self.simplifier.original, self._config.ladder.samples
         return tuple(part_errors(document, self._decoded(document), original, samples))
-
-    def _original_of(self, document: Document) -> Original:
-        both = document.field is not None and bool(document.meshes)
-        return self._original if both else self.simplifier.original
 
     def _decoded(self, document: Document) -> TexturedMesh:
         """The decoded mesh, positions in the normalized frame; the last one is kept."""
@@ -142,14 +148,35 @@ class MeshForm:
         best = min(within, key=partial(_cost, config=self._config))
         return self._refined(best, max(most_distance, best.errors.distance), most_bytes)
 
+    def best_beside(self, rest: Rest) -> Candidate:
+        """The candidate that is best for an asset of which networks hold the rest. As `best`."""
+        self._progress(Progress(stage="triangles"))
+        config = self._config
+
+        def cost(candidate: Candidate) -> Cost:
+            errors = rest.whole(candidate)[1]
+            far = max(errors.made_up.share, errors.lost.share)
+            return 0.0 if config.is_sound(errors) else far, _cost(candidate, config, rest)
+
+        return self._refined(self._rungs.cheapest(cost, rest.size), math.inf, math.inf, rest)
+
     def about(self, distance: float) -> Candidate:
         """A candidate whose mean distance is about this."""
         self._progress(Progress(stage="triangles"))
         found = self._rungs.about(distance)
         return self._refined(found, max(distance, found.errors.distance), math.inf)
 
-    def _refined(self, found: Candidate, most_distance: float, most_bytes: float) -> Candidate:
-        """The same faces with coarser positions and finer UVs, as long as that costs less."""
+    def _refined(
+        self,
+        found: Candidate,
+        most_distance: float,
+        most_bytes: float,
+        rest: Rest = NOTHING,
+    ) -> Candidate:
+        """The same faces with coarser positions and finer UVs, as long as that costs less.
+
+        No surface is lost or made up for it.
+        """
         # Bits are cheap: distances down to where rounding need not go count here.
         config = replace(self._config, negligible=self._config.ladder.tolerance)
         for fewer, more in ((1, 0), (0, 1)):
@@ -159,7 +186,9 @@ class MeshForm:
                 large = other.size > max(most_bytes, best.size)
                 if large or other.errors.distance > most_distance:
                     break
-                if _cost(other, config) >= _cost(best, config):
+                if _cost(other, config, rest) >= _cost(best, config, rest):
+                    break
+                if self._config.is_sound(best.errors) > self._config.is_sound(other.errors):
                     break
                 best, bits, uv_bits = other, bits - fewer, uv_bits + more
             found = best
@@ -198,7 +227,7 @@ class MeshForm:
         return fewest(self.simplifier)
 
 
-def _cost(candidate: Candidate, config: FormConfig) -> float:
-    errors = candidate.errors
+def _cost(candidate: Candidate, config: FormConfig, rest: Rest = NOTHING) -> float:
+    size, errors = rest.whole(candidate)
     uv = config.uv_weight * math.log(max(errors.uv, config.negligible_uv))
-    return config.cost(candidate.size, errors) + uv
+    return config.cost(size, errors) + uv

@@ -82,7 +82,8 @@ def _encoded(
     parts: tuple[MeshPart, ...] = ()
     if choice.split:
         field = choice.split.field
-        held, parts = field.fit(document), choice.split.parts()
+        held = field.fit(document)
+        parts = choice.split.parts(document(held))
     if held:
         fitted = document(held, parts)
         chosen = choice.after_fit(fitted, form.errors(fitted))

@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import math
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from functools import cached_property
 
 from nispcodec.simplify.ladder import Candidate, Simplifier
+
+Cost = tuple[float, float]
+"""What a candidate is judged by: the second only where the first is equal."""
 
 
 @dataclass(frozen=True)
@@ -47,6 +50,18 @@ class Rungs:
             share = _share(self._made[low], self._made[high], distance)
             return self.at(round(low * (high / low) ** share))
         return self.at(max(far) if far else min(near))
+
+    def cheapest(self, cost: Callable[[Candidate], Cost], around: float) -> Candidate:
+        """The candidate of least cost, found from that of about so many bytes on as it falls."""
+        rung = self._nearest(around / self.bytes_per_face)
+        best = self.at(self._faces[rung])
+        for step in (-1, 1):
+            while 0 <= rung + step < len(self._faces):
+                other = self.at(self._faces[rung + step])
+                if cost(other) >= cost(best):
+                    break
+                best, rung = other, rung + step
+        return best
 
     def rising(self, most_bytes: float, distance: float | None = None) -> Iterator[Candidate]:
         """More and more faces, up to the first candidate of so many bytes.

@@ -5,27 +5,33 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 from nispcodec.core.arrays import BoolArray
+from nispcodec.core.document import Document
 from nispcodec.core.mesh_part import MeshPart
 from nispcodec.encode.bodies import Sorted
 from nispcodec.encode.field_form import FieldForm
-from nispcodec.encode.mesh_form import MeshForm
+from nispcodec.encode.mesh_form import MeshForm, Rest
+from nispcodec.format import own_bytes, pack
 from nispcodec.geometry.analysis import Analysis, analyze
 from nispcodec.geometry.triangles import area
 
 
 @dataclass(frozen=True)
 class Split:
-    """A half for networks, and one for triangles, which take about `other_size` bytes."""
+    """A half for networks, and one for triangles.
+
+    dense   the half for networks, as triangles: what networks are measured against
+    meshes  the other half, which has such a `share` of the area that is seen
+    """
 
     field: FieldForm
+    dense: MeshForm
     meshes: MeshForm
-    other_size: float
+    share: float
 
-    def parts(self) -> tuple[MeshPart, ...]:
-        """The triangles: as near as the networks will be, or of twice the foreseen bytes."""
-        _, error = self.field.foreseen
-        distance = self.field.tuning.forms.fitted * error
-        return self.meshes.best(distance, 2 * self.other_size).parts
+    def parts(self, fitted: Document) -> tuple[MeshPart, ...]:
+        """The triangles that are best beside fitted networks, for the asset as a whole."""
+        rest = Rest(own_bytes(pack(fitted)), self.dense.errors(fitted), self.share)
+        return self.meshes.best_beside(rest).parts
 
 
 def split(whole: FieldForm, found: Sorted) -> Split | None:
@@ -42,8 +48,12 @@ def split(whole: FieldForm, found: Sorted) -> Split | None:
         return None
     # Charts are merged for networks alone.
     others = analyze(mesh.only(found.other), seed, replace(geometry, merging=None), frame)
-    meshes = MeshForm(others, seed, config, whole.progress)
-    return Split(replace(whole, analysis=dense), meshes, found.other_size)
+    return Split(
+        field=replace(whole, analysis=dense),
+        dense=MeshForm(dense, seed, config, whole.progress),
+        meshes=MeshForm(others, seed, config, whole.progress),
+        share=_seen_share(analysis, found.other),
+    )
 
 
 def _open_share(analysis: Analysis, faces: BoolArray) -> float:
@@ -52,3 +62,9 @@ def _open_share(analysis: Analysis, faces: BoolArray) -> float:
     own = faces[solid.parents]
     sizes = area(solid.pieces[own])
     return float(sizes[solid.open_surface[own]].sum() / sizes.sum())
+
+
+def _seen_share(analysis: Analysis, faces: BoolArray) -> float:
+    """The share of some faces (m,) bool in the area that an analysis does not have as hidden."""
+    sizes = area(analysis.solid.pieces)
+    return float(sizes[faces[analysis.solid.parents]].sum() / sizes.sum())

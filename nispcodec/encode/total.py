@@ -15,12 +15,12 @@ from nispcodec.core.errors import NispError, TargetSizeError
 from nispcodec.core.extras import require
 from nispcodec.core.network import NetworkSpec
 from nispcodec.core.progress import Listener, Progress, silent
-from nispcodec.encode.choice import Loss, own_bytes
+from nispcodec.encode.choice import Loss
 from nispcodec.encode.compact_images import compact_images
 from nispcodec.encode.config import EncodeConfig, TotalConfig
 from nispcodec.encode.image_shares import ImageShares
 from nispcodec.encode.targets import blank_network
-from nispcodec.format import pack
+from nispcodec.format import own_bytes, pack
 from nispcodec.metrics.psnr import psnr
 from nispcodec.model import NispModel
 from nispcodec.render.camera import turntable
@@ -126,7 +126,7 @@ class _Totals:
     def split(self, size: float, progress: Listener) -> Split:
         """A geometry of `size` bytes; 0: as the preset has it, or as large as there is room."""
         found = self._document(size, progress)
-        if not size and own_bytes(found) > self.room:
+        if not size and own_bytes(pack(found)) > self.room:
             found = self._document(self.room, progress)
         found = self._dressed(found)
         progress(Progress(stage="surface", overall=1.0))
@@ -194,7 +194,7 @@ def _names_of_images(mesh: TexturedMesh, shares: ImageShares) -> int:
     field = Field(charts, blank_network(NetworkSpec((1,), 1)))
     undressed = Document(Frame((0.0, 0.0, 0.0), 1.0), bare, (), field)
     dressed = replace(undressed, materials=mesh.materials, textures=shares.smallest)
-    return own_bytes(dressed) - own_bytes(undressed)
+    return own_bytes(pack(dressed)) - own_bytes(pack(undressed))
 
 
 def _expect_possible(config: EncodeConfig, room: float, geometry: Geometry) -> None:

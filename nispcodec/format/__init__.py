@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from nispcodec.format.document import SectionInfo, inspect, pack, unpack
+from nispcodec.format.document import SectionInfo, inspect, own_bytes, pack, unpack
 from nispcodec.format.file import read
 
-__all__ = ["SectionInfo", "inspect", "pack", "read", "unpack"]
+__all__ = ["SectionInfo", "inspect", "own_bytes", "pack", "read", "unpack"]

@@ -80,6 +80,14 @@ def inspect(data: bytes) -> list[SectionInfo]:
     ]
 
 
+def own_bytes(data: bytes) -> int:
+    """Bytes of a file without its images, as they are stored in it.
+
+    Raises FormatError as `unpack` does.
+    """
+    return len(data) - sum(each.stored_length for each in inspect(data) if each.code == TXTR)
+
+
 def _parse(data: bytes) -> tuple[Document, dict[str, Entry], dict[str, int]]:
     """Document, table entries by code, bytes of each network in NETS."""
     entries = _by_code(read_container(data))

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from nispcodec.core.arrays import BoolArray, Float64Array, Int32Array
+from nispcodec.core.arrays import Float64Array, Int32Array
 from nispcodec.core.asset import TexturedMesh
 from nispcodec.core.connectivity import connected_components, row_ids
 from nispcodec.metrics.surface import SurfacePoints
@@ -49,9 +49,9 @@ class FarPoints:
         materials = mesh.face_materials[points.faces[far]]
         return FarPoints(len(points), points.positions[far], materials)
 
-    def only(self, chosen: BoolArray) -> FarPoints:
-        """Without those of the k points (k,) bool that are not far after all."""
-        return FarPoints(self.count, self.positions[chosen], self.materials[chosen])
+    def in_larger(self, share: float) -> FarPoints:
+        """The same of a surface of which theirs is such a share of the area."""
+        return replace(self, count=round(self.count / share))
 
     @property
     def share(self) -> float:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
@@ -46,6 +47,26 @@ class Errors:
         """Whether both means are at most so large."""
         return self.distance <= distance and self.uv <= uv
 
+    def beside(self, other: Errors, share: float) -> Errors:
+        """Those of a surface of which this is a share, and another part the rest.
+
+        Far points are those of this part alone; of p99 and median they are estimates.
+        """
+
+        def mean(own: float, others: float) -> float:
+            return share * own + (1 - share) * others
+
+        return Errors(
+            distance=mean(self.distance, other.distance),
+            distance_p99=max(self.distance_p99, other.distance_p99),
+            uv=mean(self.uv, other.uv),
+            uv_median=mean(self.uv_median, other.uv_median),
+            color=math.sqrt(mean(self.color**2, other.color**2)),
+            made_up=self.made_up.in_larger(share),
+            lost=self.lost.in_larger(share),
+            far_part=mean(self.far_part, other.far_part),
+        )
+
 
 @dataclass(frozen=True)
 class Counted:
@@ -75,8 +96,7 @@ class Original:
 
     points all that count: hidden ones do, where one sees their face through an opening
     outer  (n,) bool: those that are not hidden, which means are over
-    tree   for closest points
-    whole  the same of all that is there, hidden faces too: nothing that is near it is made up
+    tree   for closest points, of hidden faces too: nothing that is near these is made up
     paint  its base colors; None: they do not count
     """
 
@@ -84,7 +104,6 @@ class Original:
     points: SurfacePoints
     outer: BoolArray
     tree: Tree
-    whole: Tree
     seed: int
     paint: Paint | None = None
 
@@ -95,23 +114,22 @@ class Original:
         samples: int,
         seed: int,
         counted: Counted | None = None,
-        whole: Tree | None = None,
         paint: Paint | None = None,
     ) -> Original:
         """`samples` points on the original; of those only the ones on `counted` faces.
 
-        whole: None where the tree has all. Raises MeshError where no face has an area.
+        Raises MeshError where no face has an area.
         """
         mesh = triangles.mesh()
         surface = Surface(mesh, mesh.positions)
         points = surface.sample(samples, np.random.default_rng([seed, 0]))
         if counted is not None and counted.held[points.faces].any():
             points = points[counted.held[points.faces]]
-        outer = sides_of(surface, points, (whole or tree).corners).outer
+        outer = sides_of(surface, points, tree.corners).outer
         if not outer.any():
             outer[:] = True
         seen = outer if counted is None else outer | counted.inner[points.faces]
-        return Original(surface, points[seen], outer[seen], tree, whole or tree, seed, paint)
+        return Original(surface, points[seen], outer[seen], tree, seed, paint)
 
     def errors(self, decoded: TexturedMesh) -> Errors:
         """Errors of a mesh whose positions are in the normalized frame.
@@ -137,7 +155,7 @@ class Original:
             uv=max((float(each.mean()) for each in seen), default=0.0),
             uv_median=max((float(np.median(each)) for each in seen), default=0.0),
             color=self._color(other, directions),
-            made_up=self._nowhere(FarPoints.of(decoded, points, directions[1].distances)),
+            made_up=FarPoints.of(decoded, points, directions[1].distances),
             lost=FarPoints.of(self.surface.mesh, self.points, there.distances),
             far_part=distance - near,
         )
@@ -158,13 +176,6 @@ class Original:
         match = Matches(self._closest(points), points)
         misses = uv_errors(self.surface, other, match)
         return float(match.distances.mean()), float(misses.mean()) if len(misses) else 0.0
-
-    def _nowhere(self, far: FarPoints) -> FarPoints:
-        """Those that are far from hidden faces too."""
-        if self.whole is self.tree or not len(far.positions):
-            return far
-        offsets = self.whole.closest(far.positions).positions - far.positions
-        return far.only(np.linalg.norm(offsets, axis=1) > FAR)
 
     def _closest(self, points: SurfacePoints) -> SurfacePoints:
         """As `Surface.closest`, by the tree that is there."""

@@ -86,40 +86,10 @@ class Simplifier:
         """
         held = None if counted is None else counted.held
         copies = copies_of(triangles, config.copies, held)
-        return Simplifier._of(copies, triangles, counted, None, coded, config, seed, paint)
-
-    @staticmethod
-    def of_kept(
-        triangles: Triangles,
-        counted: Counted,
-        coded: Coded,
-        config: LadderConfig,
-        seed: int,
-        paint: Paint | None = None,
-    ) -> Simplifier:
-        """As `of`, but others than the faces to hold are found only where copies have them."""
-        copies = copies_of(triangles, config.copies, counted.held)
-        if copies.covered.all():
-            return Simplifier._of(copies, triangles, counted, None, coded, config, seed, paint)
-        there, counted = triangles.only(copies.covered), counted.only(copies.covered)
-        whole = Tree(triangles.corners)
-        return Simplifier._of(copies, there, counted, whole, coded, config, seed, paint)
-
-    @staticmethod
-    def _of(
-        copies: Copies,
-        triangles: Triangles,
-        counted: Counted | None,
-        whole: Tree | None,
-        coded: Coded,
-        config: LadderConfig,
-        seed: int,
-        paint: Paint | None,
-    ) -> Simplifier:
         source = Source(copies.triangles)
         same = len(source.triangles) == len(triangles)
         tree = source.tree if same else Tree(triangles.corners)
-        original = Original.of(triangles, tree, config.samples, seed, counted, whole, paint)
+        original = Original.of(triangles, tree, config.samples, seed, counted, paint)
         return Simplifier(copies, source, original, coded, config, seed)
 
     def fitted(self, faces: int) -> Triangles:

@@ -16,9 +16,10 @@ from nispcodec.core.errors import FitError, TargetSizeError
 from nispcodec.core.mesh_part import MeshPart
 from nispcodec.core.network import NetworkSpec
 from nispcodec.encode.bodies import Sorted
-from nispcodec.encode.choice import Choice, own_bytes
+from nispcodec.encode.choice import Choice
 from nispcodec.encode.config import FormConfig, Tuning
 from nispcodec.encode.mesh_form import coded_bytes
+from nispcodec.format import own_bytes, pack
 from nispcodec.metrics.far_points import FarPoints
 from nispcodec.simplify.errors import Errors
 from tests import tiny
@@ -27,7 +28,7 @@ from tests.infer.parts import cube, part_of
 PART = part_of(cube())
 TUNING = Tuning()
 FIELD = tiny.document(sdf=tiny.random_network(NetworkSpec((24, 24), 1)))
-SIZE = own_bytes(FIELD)
+SIZE = own_bytes(pack(FIELD))
 EXACT = Errors(0.0, 0.0, 0.0, 0.0)
 OFF = Errors(0.01, 0.02, 0.01, 0.005)
 
@@ -135,7 +136,7 @@ LOST = FarPoints(1000, np.zeros((50, 3)), np.zeros(50, np.int32))
 def test_wrong_colors_and_lost_surface_of_networks_are_worth_bytes(errors: Errors) -> None:
     same = replace(EXACT, distance=OFF.distance)
     larger = SimpleNamespace(parts=(PART,) * 38, errors=same, size=1.1 * SIZE)
-    assert 1 < own_bytes(as_mesh(None, larger.parts)) / SIZE < TUNING.forms.worth(errors)
+    assert 1 < own_bytes(pack(as_mesh(None, larger.parts))) / SIZE < TUNING.forms.worth(errors)
     chosen = choice(Told(SIZE, about=larger)).after_fit(FIELD, errors)
     assert len(chosen.document.meshes) == 38
     assert choice(Told(SIZE, about=larger)).after_fit(FIELD, OFF).document is FIELD
@@ -214,7 +215,7 @@ def test_to_a_size_nothing_is_fitted_where_triangles_are_surely_nearer(
 
 def test_triangles_over_the_size_are_not_taken_however_near() -> None:
     form = Told(10.0, of_size=candidate(EXACT), fewest=candidate())
-    size = own_bytes(as_mesh(None, (PART,)))
+    size = own_bytes(pack(as_mesh(None, (PART,))))
     chosen = choice(form, target_size=size - 1).after_fit(FIELD, OFF)
     assert (chosen.document, chosen.errors, chosen.other_bytes) == (FIELD, OFF, size)
 
@@ -240,7 +241,7 @@ def test_targets_that_triangles_miss_are_errors() -> None:
     small = choice(form, geometry="mesh", target_size=20)
     with pytest.raises(TargetSizeError, match="target size: expected at least") as refused:
         small.triangles()
-    assert refused.value.least == own_bytes(as_mesh(None, (PART,)))
+    assert refused.value.least == own_bytes(pack(as_mesh(None, (PART,))))
     wide = choice(form, geometry="mesh", target_size=20_000)
     assert wide.triangles().document.meshes == (PART,)
 
@@ -251,7 +252,7 @@ def test_without_networks_triangles_that_fit_are_left_and_else_the_least_of_both
 ) -> None:
     form, triangles = (
         Told(of_size=candidate(), fewest=candidate()),
-        own_bytes(as_mesh(None, (PART,))),
+        own_bytes(pack(as_mesh(None, (PART,)))),
     )
     for size in (triangles, triangles - 1):
         found, refused = choice(form, target_size=size), TargetSizeError(networks, size)
@@ -282,13 +283,6 @@ def test_where_nothing_has_a_finite_loss_triangles_have_the_target_size() -> Non
 
         found = Choice(form, how, TUNING, lambda _: None, as_mesh, loss)
         assert found.triangles().errors == errors
-
-
-def test_images_do_not_count() -> None:
-    assert own_bytes(FIELD) < own_bytes(tiny.varied(FIELD, half_thickness=0.1))
-    assert own_bytes(FIELD) == own_bytes(
-        replace(FIELD, textures=(replace(FIELD.textures[0], data=bytes(999)),))
-    )
 
 
 @pytest.mark.parametrize(("of_mesh", "taken"), [(1.0, "mesh"), (3.0, "field")])

@@ -8,8 +8,9 @@ from nispcodec.core.asset import Material
 from nispcodec.core.document import Document, Frame
 from nispcodec.core.progress import silent
 from nispcodec.encode.config import FormConfig
-from nispcodec.encode.mesh_form import MeshForm, coded_bytes
+from nispcodec.encode.mesh_form import MeshForm, Rest, coded_bytes
 from nispcodec.geometry.analysis import analyze
+from nispcodec.simplify.errors import Errors
 from tests.geometry.shapes import box_asset, soup, sphere
 from tests.simplify.scenes import copied, pebble
 
@@ -68,6 +69,15 @@ def test_the_best_makes_up_and_loses_nothing_notable(ball: MeshForm) -> None:
     coarse = ball.fewest()
     assert not CONFIG.is_sound(coarse.errors)
     assert CONFIG.is_sound(ball.best(1.0, math.inf).errors)
+
+
+def test_beside_networks_triangles_are_as_fine_as_the_whole_asks(ball: MeshForm) -> None:
+    far = Errors(5e-3, 5e-3, 0.0, 0.0)
+    found = ball.best_beside(Rest(3000.0, far, 0.5))
+    assert CONFIG.is_sound(found.errors)
+    # A nearer surface is worth more where there is more of it, and where many bytes are spent.
+    assert found.size < ball.best_beside(Rest(3000.0, far, 0.9)).size
+    assert found.size < ball.best_beside(Rest(30_000.0, far, 0.5)).size
 
 
 def test_errors_of_a_document_are_those_of_what_it_decodes_to(ball: MeshForm) -> None:

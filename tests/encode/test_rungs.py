@@ -55,6 +55,12 @@ def test_as_many_faces_as_are_expected_to_be_that_near(rungs: Rungs, faces: int)
     assert math.isclose(rungs.about(1 / faces).faces, faces, rel_tol=0.01)
 
 
+@pytest.mark.parametrize("around", [300.0, 6000.0, 60_000.0])
+def test_the_least_cost_is_found_from_either_side(rungs: Rungs, around: float) -> None:
+    found = rungs.cheapest(lambda made: (0.0, abs(math.log(made.faces / 2000))), around)
+    assert 2000 / 1.8**0.5 <= found.faces <= 2000 * 1.8**0.5
+
+
 def test_what_is_clearly_too_large_takes_one_candidate(law: PowerLaw, rungs: Rungs) -> None:
     assert rungs.bytes_at(1e-6, 1000.0, 2000.0) > 2000
     assert len(law.asked) == 1

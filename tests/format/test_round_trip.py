@@ -13,7 +13,7 @@ from nispcodec.core.asset import Material, Texture, TextureMap
 from nispcodec.core.document import ChartTable, Document, Frame, StoredSection
 from nispcodec.core.errors import FormatError
 from nispcodec.core.network import NetworkSpec
-from nispcodec.format import inspect, metadata, pack, unpack
+from nispcodec.format import inspect, metadata, own_bytes, pack, unpack
 from nispcodec.format.codings.registry import CODINGS
 from tests.format.documents import assert_same, documents, full, network, quantized, tiny
 from tests.format.test_measures import ENCODERS
@@ -59,6 +59,13 @@ def test_inspect_accounts_for_every_byte() -> None:
     assert list(by_code["NETS"].parts) == ["sdf", "chart", "uv"]
     assert sum(by_code["NETS"].parts.values()) == by_code["NETS"].decoded_length
     assert by_code["TXTR"].parts == {"wood.png": 16, "wood normal.jpg": 10}
+
+
+def test_own_bytes_are_those_without_images() -> None:
+    plain = full()
+    first, *others = plain.textures
+    longer = varied(plain, textures=(dataclasses.replace(first, data=bytes(16)), *others))
+    assert own_bytes(pack(longer)) == own_bytes(pack(plain)) < len(pack(plain))
 
 
 def test_overhead_of_a_one_material_asset() -> None:

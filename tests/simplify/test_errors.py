@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from nispcodec.metrics.compare import Reference
+from nispcodec.metrics.far_points import FarPoints
 from nispcodec.simplify.collapse import collapsed
 from nispcodec.simplify.errors import Counted, Errors, Original, mesh_of
 from nispcodec.simplify.quantize import quantized
@@ -78,8 +80,20 @@ def test_what_is_missing_is_lost_and_what_is_too_much_is_made_up() -> None:
     assert errors.made_up.share == pytest.approx(0.5, abs=0.03)
     assert errors.lost.share == 0
     # What lies on faces that are hidden is not made up.
-    hidden = Original.of(half, other.tree, 2000, 0, whole=source.tree)
-    assert hidden.errors(source.triangles.mesh()).made_up.share == 0
+    below = source.triangles.corners[..., 2].mean(axis=1) <= 0
+    hidden = Original.of(source.triangles, source.tree, 2000, 0, Counted.of(~below))
+    assert hidden.errors(source.triangles.only(below).mesh()).made_up.share == 0
+
+
+def test_errors_of_two_parts_are_weighted_by_their_areas() -> None:
+    far = FarPoints(1000, np.zeros((10, 3)), np.zeros(10, np.int32))
+    one, other = Errors(1e-3, 5e-3, 2e-3, 1e-3, 0.3, lost=far), Errors(3e-3, 4e-3, 6e-3, 5e-3, 0.1)
+    both = one.beside(other, 0.25)
+    means = both.distance, both.uv, both.uv_median
+    assert means == pytest.approx((2.5e-3, 5e-3, 4e-3))
+    assert both.distance_p99 == 5e-3
+    assert both.color == pytest.approx(math.sqrt(0.25 * 0.3**2 + 0.75 * 0.1**2))
+    assert (both.lost.share, both.made_up.share) == (0.0025, 0.0)
 
 
 def test_both_means_must_be_within() -> None:
