@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
 
 from nispcodec.core.arrays import BoolArray, Float64Array
+from nispcodec.core.connectivity import connected_components
 from nispcodec.core.creases import breaking, face_normals, fan_normals, sharp_sides, side_pairs
 from nispcodec.simplify.closest import Tree, unit
 from nispcodec.simplify.config import CreaseConfig
@@ -21,18 +23,32 @@ def shaded(source: Source, fewer: Triangles, config: CreaseConfig = CreaseConfig
     """The triangles with creases like the source's; unchanged where nobody said which it has.
 
     Of several ways to find them the one whose shading is nearest to the source's: edges that turn
-    sharply, or none, which take no bytes; edges over which the source's normals jump, or these and
-    sharp ones.
+    sharply, or none, which take no bytes; or for each group of edges that hang together the best of
+    these, of edges over which the source's normals jump, and of both.
     """
     if source.triangles.creases is None:
         return fewer
     sharp, jumping = sharp_sides(fewer.faces, fewer.corners), _jumping(source, fewer, config)
     places = np.einsum("sc,mcd->msd", WITHIN, fewer.corners)
     wanted = _normals_at(source, fewer, places)
-    ways = (sharp, np.zeros_like(sharp), jumping, sharp | jumping)
-    errors = np.array([_shading_error(replace(fewer, creases=each), wanted) for each in ways])
+    free = (sharp, np.zeros_like(sharp))
+    mixed = _mixed(fewer, (*free, jumping, sharp | jumping), wanted)
+    ways = (*free, mixed)
+    errors = np.array([_shading_errors(fewer, each, wanted).sum() for each in ways])
     errors[:2] *= config.free
     return replace(fewer, creases=ways[int(errors.argmin())])
+
+
+def _mixed(fewer: Triangles, ways: Sequence[BoolArray], wanted: Float64Array) -> BoolArray:
+    """(m, 3): for each group of edges that hang together the way (m, 3) of the nearest shading."""
+    union = np.logical_or.reduce(ways)
+    starts, ends = fewer.faces[union], np.roll(fewer.faces, -1, axis=1)[union]
+    count, labels = connected_components(starts, ends, len(fewer.positions))
+    groups = labels[fewer.faces]
+    errors = [_shading_errors(fewer, each, wanted) for each in ways]
+    sums = [np.bincount(groups.ravel(), np.repeat(each, 3), count) for each in errors]
+    best = np.argmin(sums, axis=0)[groups]
+    return np.asarray(np.choose(best, ways))
 
 
 def written_creases(welded: Triangles, config: CreaseConfig = CreaseConfig()) -> BoolArray:
@@ -97,13 +113,12 @@ def _normals_at(source: Source, fewer: Triangles, points: Float64Array) -> Float
     return np.where(away, -found, found)
 
 
-def _shading_error(fewer: Triangles, wanted: Float64Array) -> float:
-    """Mean angle of the normals at WITHIN in each face with those wanted (m, 3, 3), by area."""
-    assert fewer.creases is not None
-    rows, fans = fan_normals(fewer.faces, fewer.corners, fewer.creases)
+def _shading_errors(fewer: Triangles, creases: BoolArray, wanted: Float64Array) -> Float64Array:
+    """(m,): angles of the normals at WITHIN in each face with those wanted (m, 3, 3), by area."""
+    rows, fans = fan_normals(fewer.faces, fewer.corners, creases)
     shown = np.einsum("sc,mcd->msd", WITHIN, rows[fans])
     shown /= np.maximum(np.linalg.norm(shown, axis=2, keepdims=True), np.finfo(np.float64).tiny)
-    return float((_angle(shown, wanted).sum(axis=1) * Tree(fewer.corners).areas).sum())
+    return np.asarray(_angle(shown, wanted).sum(axis=1) * Tree(fewer.corners).areas)
 
 
 def _angle(first: Float64Array, second: Float64Array) -> Float64Array:

@@ -17,6 +17,7 @@ from nispcodec.simplify.quantize import quantized
 from nispcodec.simplify.shading import shaded
 from nispcodec.simplify.source import Source
 from nispcodec.simplify.triangles import Triangles
+from nispcodec.simplify.triangles import joined as joined_triangles
 from tests.geometry import shapes
 from tests.simplify.meshes import UNIT, ball
 
@@ -55,6 +56,22 @@ def test_facets_stay_facets_and_smooth_stays_smooth(flat: bool) -> None:
     share = fewer.creases[turned].mean()
     assert share > 0.5 if flat else share < 0.1
     assert shaded(Source(ball()), collapsed(ball(), 150)).creases is None
+
+
+def test_each_body_of_a_part_is_shaded_its_own_way() -> None:
+    flat, smooth = with_creases(ball(6), 0.0), with_creases(ball(), 3.0)
+    fewer = [collapsed(flat, 200), collapsed(smooth, 60)]
+    aside = np.array([3.0, 0, 0])
+    both, source = (
+        joined_triangles(first, replace(second, positions=second.positions + aside))
+        for first, second in (fewer, (flat, smooth))
+    )
+    found = shaded(Source(source), both)
+    turned = sharp_sides(both.faces, both.corners, 0.1)
+    assert found.creases is not None
+    first = np.arange(len(both)) < len(fewer[0])
+    assert found.creases[first][turned[first]].mean() > 0.5
+    assert found.creases[~first].mean() < 0.05
 
 
 def test_copies_that_are_mirrored_break_over_the_same_edges() -> None:
