@@ -150,6 +150,7 @@ class Level:
 
 def _told(levels: list[Level], colors: bool, seconds: float, simple: bool, as_json: bool) -> None:
     """Print what was lost, and what was written; `simple`: there might be fewer faces."""
+    from nispcodec.core.counted import counted
     from nispcodec.io.save import losses
 
     first = levels[0].mesh
@@ -163,7 +164,7 @@ def _told(levels: list[Level], colors: bool, seconds: float, simple: bool, as_js
         return
     for each, report in zip(levels, (finest, *coarser), strict=True):
         took = f" in {duration(seconds)}" if report is finest else ""
-        click.echo(f"{report['file']}: {report['faces']:,} faces{took}")
+        click.echo(f"{report['file']}: {counted(report['faces'], 'face')}{took}")
         print_written(each.files, "  ")
     if simple:
         click.echo(FEWER)

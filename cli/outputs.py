@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import os
 import sys
 from collections.abc import Callable, Iterable, Sequence
@@ -58,10 +59,11 @@ class OutputFile(click.ParamType):  # type: ignore[type-arg]  # generic in newes
     def convert(
         self, value: str | Path, param: click.Parameter | None, ctx: click.Context | None
     ) -> Any:
-        """The path. Raises NispError for another suffix, a folder, or no folder to write into."""
+        """The path. Raises NispError for what cannot be written: its suffix, name or folder."""
         from nispcodec.core.errors import NispError
 
         path, suffixes = Path(value), self.suffixes()
+        expect_fitting_name(path)
         if path.suffix.lower() not in suffixes:
             found = path.suffix or "no suffix"
             raise NispError(f"{path}: expected {', '.join(suffixes)}, found {found}")
@@ -108,6 +110,18 @@ def nisp_suffix() -> tuple[str, ...]:
     return (".nisp",)
 
 
+def expect_fitting_name(path: Path) -> None:
+    """Raises NispError for a name that is longer than its file system takes."""
+    from nispcodec.core.errors import NispError
+
+    try:
+        os.lstat(path)
+    except OSError as why:
+        if why.errno == errno.ENAMETOOLONG:
+            found = len(os.fsencode(path.name))
+            raise NispError(f"{path}: expected a shorter name, found {found} bytes") from why
+
+
 def expect_folder(folder: Path) -> None:
     """Raises NispError for a folder that is missing or cannot be written into."""
     from nispcodec.core.errors import NispError
@@ -130,9 +144,12 @@ def make_folder(folder: Path) -> None:
 
 
 def refuse_overwriting(paths: Iterable[Path], force: bool) -> None:
-    """Raises NispError, naming what is in the way, where one of the files is there already."""
+    """Raises NispError, naming it, where one of the files is there already or its name too long."""
     from nispcodec.core.errors import NispError
 
+    paths = list(paths)
+    for path in paths:
+        expect_fitting_name(path)
     taken = [] if force else [path for path in paths if os.path.lexists(path)]
     if taken:
         others = f" (and {', '.join(path.name for path in taken[1:])})" if taken[1:] else ""

@@ -67,11 +67,13 @@ def command(
 
 
 def _report(path: Path, points: int, as_json: bool) -> None:
+    from nispcodec.core.counted import counted
+
     size = path.stat().st_size
     if as_json:
         print_json({"file": str(path), "points": points, "bytes": size})
     else:
-        click.echo(f"{path}: {points:,} points, {size:,} bytes")
+        click.echo(f"{path}: {counted(points, 'point')}, {size:,} bytes")
 
 
 def _answers(document: Document, points: AnyArray, frame: str) -> Answers:

@@ -47,12 +47,13 @@ def command(
     Example: nisp sheet model.obj model.nisp -o sheet.png
     """
     from nispcodec.core.atomic_write import write_atomic
+    from nispcodec.core.counted import counted
     from nispcodec.render.images import image_bytes
     from nispcodec.render.sheet import sheet
 
     refuse_overwriting([output], force)
     mesh, (other, kilobytes) = read_mesh(original), _decoded(decoded)
-    title = f"{original.name}, {len(mesh.faces):,} faces: {decoded.name}, {kilobytes}"
+    title = f"{original.name}, {counted(len(mesh.faces), 'face')}: {decoded.name}, {kilobytes}"
     with shown("sheet", progress, quiet) as listen:
         page = sheet(mesh, other, size, title, listen)
     write_atomic(output, image_bytes([page.picture], output.suffix.lower()))

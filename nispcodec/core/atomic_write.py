@@ -22,7 +22,8 @@ def write_atomic(path: Path, data: bytes | Writing) -> None:
     """
     expect_path(path)
     try:
-        handle, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
+        # A name of its own, as that of `path` may be as long as names can be.
+        handle, name = tempfile.mkstemp(dir=path.parent, prefix=".nisp-", suffix=".part")
     except OSError as why:
         raise NispError(f"{path}: cannot be written: {why.strerror}") from why
     temporary = Path(name)

@@ -15,6 +15,7 @@ import numpy as np
 
 from nispcodec.core.arrays import BoolArray, Float32Array, Float64Array, Int32Array, Int64Array
 from nispcodec.core.connectivity import connected_components
+from nispcodec.core.counted import counted
 from nispcodec.core.network import Network
 from nispcodec.extract.config import ComponentConfig
 from nispcodec.extract.grid import CUBE
@@ -37,7 +38,8 @@ class ExtractionReport:
         """Warnings for the user of the mesh: a sentence when something was dropped."""
         if not self.dropped:
             return ()
-        return (f"{self.dropped} spurious component(s), {self.dropped_faces} faces, dropped",)
+        what = counted(self.dropped, "spurious component")
+        return (f"{what}, {counted(self.dropped_faces, 'face')}, dropped",)
 
 
 def without_noise(

@@ -74,15 +74,15 @@ def simplest(
 ) -> Surface:
     """The surface with about as few triangles as keep its deviation within `error`.
 
-    Fewer and fewer are tried, as many as the last ones' deviation foretells; where the first ones
-    are too few already, more. Simplifying what is simple already takes little time.
+    Fewer and fewer are tried, as many as the last ones' deviation foretells; where those are too
+    few, more. Simplifying what is simple already takes little time.
     """
     fewest, share = surface, config.first
     while share < config.close:
         fewer = _collapsed(fewest, int(share * len(fewest.faces)), config)
-        foretold = (deviation(network, fewer, config.measured) / error) ** config.slope
-        stuck = len(fewer.faces) >= config.close * len(fewest.faces)
-        if stuck or (foretold > 1 and fewest is not surface):
+        left = config.fitting * deviation(network, fewer, config.measured)
+        foretold = (left / error) ** config.slope
+        if len(fewer.faces) >= config.close * len(fewest.faces):
             break
         if foretold > 1:
             share *= max(foretold, config.more)

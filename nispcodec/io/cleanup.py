@@ -9,6 +9,7 @@ import numpy as np
 from nispcodec.core.arrays import BoolArray, Float64Array, Int32Array
 from nispcodec.core.asset import TexturedMesh
 from nispcodec.core.connectivity import row_ids
+from nispcodec.core.counted import counted
 from nispcodec.core.errors import MeshError
 
 # A triangle lower than this share of its longest edge is a line.
@@ -28,7 +29,9 @@ def clean(mesh: TexturedMesh, name: str) -> TexturedMesh:
     _expect_moderate(mesh.positions, name)
     flat = degenerate_faces(mesh)
     if flat.all():
-        raise MeshError(f"{name}: expected faces with an area, found {len(flat)} degenerate faces")
+        raise MeshError(
+            f"{name}: expected faces with an area, found {counted(len(flat), 'degenerate face')}"
+        )
     mesh = _drop_faces(mesh, flat, "degenerate")
     mesh = _drop_faces(mesh, duplicate_faces(mesh), "duplicate")
     return _drop_unreferenced(mesh)
@@ -76,7 +79,7 @@ def _drop_faces(mesh: TexturedMesh, dropped: BoolArray, kind: str) -> TexturedMe
         uv_faces=mesh.uv_faces[~dropped],
         face_materials=mesh.face_materials[~dropped],
         creases=None if mesh.creases is None else mesh.creases[~dropped],
-        warnings=(*mesh.warnings, f"dropped {_count(int(dropped.sum()), f'{kind} face')}"),
+        warnings=(*mesh.warnings, f"dropped {counted(int(dropped.sum()), f'{kind} face')}"),
     )
 
 
@@ -87,7 +90,7 @@ def _drop_unreferenced(mesh: TexturedMesh) -> TexturedMesh:
         "unreferenced vertex": len(mesh.positions) - len(positions),
         "unreferenced texture coordinate": len(mesh.uvs) - len(uvs),
     }
-    said = tuple(f"dropped {_count(count, kind)}" for kind, count in lost.items() if count)
+    said = tuple(f"dropped {counted(count, kind)}" for kind, count in lost.items() if count)
     return replace(
         mesh,
         positions=positions,
@@ -105,8 +108,3 @@ def _compact(rows: Float64Array, faces: Int32Array) -> tuple[Float64Array, Int32
     used[-1] = False
     numbers = np.append(np.cumsum(used[:-1]) - 1, -1).astype(np.int32)
     return rows[used[:-1]], numbers[faces]
-
-
-def _count(number: int, noun: str) -> str:
-    plural = noun.replace("vertex", "vertice") + "s"
-    return f"{number} {noun if number == 1 else plural}"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import re
 from functools import partial
 from pathlib import Path
@@ -43,6 +44,16 @@ def test_objects_have_the_name_of_the_file(model: Path, tmp_path: Path) -> None:
     assert data.count(b'"name":"teapot"') == 3  # scene, node, mesh
     decoded(model, tmp_path / "teapot.obj", "--resolution", 16)
     assert "o teapot\n" in (tmp_path / "teapot.obj").read_text()
+
+
+def test_names_too_long_are_refused_before_the_work(model: Path, tmp_path: Path) -> None:
+    longest = os.pathconf(tmp_path, "PC_NAME_MAX")
+    # That of the mesh itself, and those of the files beside it.
+    for suffix, more in ((".glb", 1), (".gltf", 0)):
+        out = tmp_path / ("a" * (longest + more - len(suffix)) + suffix)
+        refused(nisp("decode", model, "-o", out), "expected a shorter name, found 2")
+    assert not list(tmp_path.glob("a*"))
+    decoded(model, tmp_path / ("a" * (longest - 4) + ".stl"), "--resolution", 16)
 
 
 def test_compress(model: Path, tmp_path: Path) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import signal
 import subprocess
 import sys
@@ -49,6 +50,13 @@ def test_it_replaces_and_leaves_nothing_beside(tmp_path: Path) -> None:
         write_atomic(path, content)
         assert path.read_bytes() == content
     assert list(tmp_path.iterdir()) == [path]
+
+
+def test_names_may_be_as_long_as_the_file_system_takes(tmp_path: Path) -> None:
+    longest = os.pathconf(tmp_path, "PC_NAME_MAX")
+    path = tmp_path / ("a" * longest)
+    write_atomic(path, b"whole")
+    assert path.read_bytes() == b"whole"
 
 
 def test_a_folder_that_is_not_there(tmp_path: Path) -> None:

@@ -87,7 +87,7 @@ def test_vertex_colors_are_left_out_with_a_warning() -> None:
 def test_faces_with_and_without_uv_mix() -> None:
     mesh = read(TRIANGLE + "vt 0 0\nf 1/1 2/1 3/1\nf 3 2 1\nf 1/1 2 3/1\n")
     assert mesh.has_uv.tolist() == [True, False, False]
-    assert "1 faces have texture coordinates in some corners only" in mesh.warnings[0]
+    assert "texture coordinates in some corners only of 1 face" in mesh.warnings[0]
 
 
 def test_polygons_keep_their_uvs_and_material() -> None:

@@ -10,6 +10,7 @@ import numpy as np
 
 from nispcodec.core.arrays import Float64Array, Int32Array, Int64Array
 from nispcodec.core.asset import TexturedMesh
+from nispcodec.core.counted import counted
 from nispcodec.core.errors import MeshError
 from nispcodec.io.folder import Folder
 from nispcodec.io.read import wavefront
@@ -304,5 +305,7 @@ def _whole_or_none(uv_faces: Int64Array, warnings: list[str], name: str) -> Int3
     missing = uv_faces.min(axis=1, initial=0) < 0
     partial = int((missing & (uv_faces.max(axis=1, initial=-1) >= 0)).sum())
     if partial:
-        warnings.append(f"{name}: {partial} faces have texture coordinates in some corners only")
+        warnings.append(
+            f"{name}: texture coordinates in some corners only of {counted(partial, 'face')}"
+        )
     return np.where(missing[:, None], -1, uv_faces).astype(np.int32)
