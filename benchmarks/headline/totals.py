@@ -46,7 +46,7 @@ from nispcodec.render.views import scene_of
 
 RESULTS = Path("benchmarks/results/totals.json")
 KEPT = (0.5, 0.25, 0.125, 0.0625)
-BITS, WHOLE_BITS = (10, 11), (9, 10, 11, 12, 13)
+BITS, WHOLE_BITS = (10, 11), (9, 10, 11, 12, 13, 14, 16, 18)
 """Of positions and UVs of simplified meshes, and of all faces."""
 FEWEST = 150
 # The weight of UVs that is best as a rule, and seams as they are.
