@@ -149,6 +149,7 @@ RESULTS = (
         ("nispcodec/io/write", "nispcodec/extract"),
     ),
     CommittedResult("rounding_loss.json", "benchmarks.studies.rounding_loss", ROUND_TRIP),
+    CommittedResult("specks.json", "benchmarks.studies.specks", ROUND_TRIP),
     CommittedResult("training_step.json", "benchmarks.studies.training_step", ("nispcodec/train",)),
     CommittedResult(
         "preparation_time.json",

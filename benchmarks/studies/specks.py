@@ -1,8 +1,9 @@
 """Specks: the share of a surface that shows a visibly wrong color, in meshes and in queries.
 
-    python -m benchmarks.studies.specks --models DIR --assets ../shared/assets [--only spot]
+    python -m benchmarks.studies.specks --old OLD --models NEW --assets ../shared/assets
 
-DIR holds NAME.nisp for the assets NAME. Results are kept asset by asset.
+OLD and NEW hold NAME.nisp for the assets NAME, by an older encoder and by this one; both are
+decoded by this one. Results are kept asset by asset.
 
 A point is a speck where its luminance is more than `OFF` from that of the original, which is
 smooth there, and from all that the original shows within `ALLOWED` of it. Smooth is where one chart
@@ -12,7 +13,9 @@ no edge.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 import click
@@ -21,6 +24,7 @@ from scipy.spatial import cKDTree
 
 from benchmarks.measuring.model_records import measured, models_options
 from benchmarks.measuring.result_file import Record
+from benchmarks.measuring.target import Asked, Target, asked_of_each
 from nispcodec.core.arrays import BoolArray, Float32Array, Float64Array, Int64Array
 from nispcodec.core.asset import TexturedMesh
 from nispcodec.core.connectivity import connected_faces, row_ids
@@ -43,6 +47,7 @@ ALLOWED = 2e-3
 KNOWN = 400_000
 NEIGHBORS = 24
 WAYS = np.array(np.meshgrid(*[[-1, 0, 1]] * 3)).reshape(3, -1).T / np.sqrt(3)
+LOOKS = ("mesh", "queries")
 LUMINANCE = np.array([0.2126, 0.7152, 0.0722], np.float32)
 
 
@@ -120,7 +125,7 @@ def of_mesh(original: Original, decoded: Surface, samples: int) -> dict[str, flo
     return {"mesh": float(found.mean()), "smooth": float(smooth.mean())}
 
 
-def asked(original: Original, samples: int) -> SurfacePoints:
+def seen_points(original: Original, samples: int) -> SurfacePoints:
     """Smooth points of an original to ask for colors, those left out that nobody sees."""
     drawn = original.surface.sample(samples, np.random.default_rng([0, 2]))
     seen = drawn[sides_of(original.surface, drawn).outer]
@@ -129,24 +134,44 @@ def asked(original: Original, samples: int) -> SurfacePoints:
 
 def specks(original: Original, model: NispModel, samples: int = 400_000) -> dict[str, float]:
     """Shares of specks: `mesh`, of the extracted mesh; `queries`, of answers on the original."""
-    points = asked(original, samples)
+    points = seen_points(original, samples)
     answers = luminance(model.color(points.positions, frame="normalized"))
     found = original.specks(points.positions, points, answers)
     decoded = Surface.of(model.to_mesh(), original.frame)
     return {**of_mesh(original, decoded, samples), "queries": float(found.mean())}
 
 
+def asked(results: Record) -> Iterator[Asked]:
+    """Of every asset: half of the old specks at most."""
+    records: dict[str, Record] = results["assets"]
+    return asked_of_each(records, lambda name: [_half(records[name], way) for way in LOOKS])
+
+
+def _half(record: Record, way: str) -> Target:
+    return Target(f"specks, {way}", (way,), record["old"][way] / 2)
+
+
 @click.command(help=__doc__)
+@click.option("--old", type=click.Path(path_type=Path, exists=True), required=True)
 @models_options(RESULTS)
-def main(models: Path, assets: Path, only: tuple[str, ...], output: Path) -> None:
-    """Measure what is not measured yet."""
-    for name, found in measured(models, assets, only, output, record).items():
-        click.echo(f"{name}: {found['mesh']:.1e} of the mesh, {found['queries']:.1e} of queries")
+def main(old: Path, models: Path, assets: Path, only: tuple[str, ...], output: Path) -> None:
+    """Measure what is not measured yet, and print asked against measured."""
+    records = measured(models, assets, only, output, partial(record, old))
+    for each in asked({"assets": records}):
+        click.echo(each.line())
 
 
-def record(model: Path, original: Path) -> Record:
-    """The shares of one file."""
-    return {**specks(Original.of(load_mesh(original)), NispModel(unpack(model.read_bytes())))}
+def record(old: Path, model: Path, original: Path) -> Record:
+    """The shares of one file, those of the one of the same name in `old`, and what holds them."""
+    asset = Original.of(load_mesh(original))
+    return {**shares(asset, model), "old": shares(asset, old / model.name)}
+
+
+def shares(original: Original, path: Path) -> Record:
+    """The shares of one file, and whether it is a field or meshes."""
+    document = unpack(path.read_bytes())
+    held = [*(["field"] if document.field else []), *(["meshes"] if document.meshes else [])]
+    return {"held_as": " and ".join(held), **specks(original, NispModel(document))}
 
 
 if __name__ == "__main__":

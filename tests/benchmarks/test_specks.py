@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from benchmarks.studies.specks import Original, asked, of_mesh
+from benchmarks.studies.specks import Original, asked, of_mesh, seen_points
 from nispcodec.core.asset import Texture, TexturedMesh
 from nispcodec.core.texture import encode_image
 from nispcodec.metrics.surface import Surface
@@ -79,6 +79,12 @@ def test_hidden_places_are_not_asked() -> None:
         uv_faces=np.vstack([outer.faces, inner.faces + count]).astype(np.int32),
         face_materials=np.zeros(2 * len(outer.faces), np.int32),
     )
-    seen = asked(Original.of(both, KNOWN), 2_000).positions
+    seen = seen_points(Original.of(both, KNOWN), 2_000).positions
     assert len(seen) > 500
     assert np.linalg.norm(seen, axis=1).min() > 0.9
+
+
+def test_half_of_the_old_specks_are_asked_for() -> None:
+    old = {"mesh": 2e-4, "queries": 0.0}
+    assets = {"cup": {"mesh": 1.1e-4, "queries": 0.0, "old": old}}
+    assert [each.verdict for each in asked({"assets": assets})] == ["missed", "met"]
