@@ -3,7 +3,8 @@
     python -m benchmarks.studies.specks --old OLD --models NEW --assets ../shared/assets
 
 OLD and NEW hold NAME.nisp for the assets NAME, by an older encoder and by this one; both are
-decoded by this one. Results are kept asset by asset.
+decoded by this one. Without OLD nothing is compared, but where there are no specks at all. Results
+are kept asset by asset.
 
 A point is a speck where its luminance is more than `OFF` from that of the original, which is
 smooth there, and from all that the original shows within `ALLOWED` of it. Smooth is where one chart
@@ -47,7 +48,9 @@ ALLOWED = 2e-3
 KNOWN = 400_000
 NEIGHBORS = 24
 WAYS = np.array(np.meshgrid(*[[-1, 0, 1]] * 3)).reshape(3, -1).T / np.sqrt(3)
+SAMPLES = 400_000
 LOOKS = ("mesh", "queries")
+HALVED = [Target(f"specks, {look}, new / old", ("ratios", look), 0.5) for look in LOOKS]
 LUMINANCE = np.array([0.2126, 0.7152, 0.0722], np.float32)
 
 
@@ -132,7 +135,7 @@ def seen_points(original: Original, samples: int) -> SurfacePoints:
     return seen[original.smooth(seen)]
 
 
-def specks(original: Original, model: NispModel, samples: int = 400_000) -> dict[str, float]:
+def specks(original: Original, model: NispModel, samples: int = SAMPLES) -> dict[str, float]:
     """Shares of specks: `mesh`, of the extracted mesh; `queries`, of answers on the original."""
     points = seen_points(original, samples)
     answers = luminance(model.color(points.positions, frame="normalized"))
@@ -143,28 +146,28 @@ def specks(original: Original, model: NispModel, samples: int = 400_000) -> dict
 
 def asked(results: Record) -> Iterator[Asked]:
     """Of every asset: half of the old specks at most."""
-    records: dict[str, Record] = results["assets"]
-    return asked_of_each(records, lambda name: [_half(records[name], way) for way in LOOKS])
-
-
-def _half(record: Record, way: str) -> Target:
-    return Target(f"specks, {way}", (way,), record["old"][way] / 2)
+    return asked_of_each(results["assets"], lambda name: HALVED)
 
 
 @click.command(help=__doc__)
-@click.option("--old", type=click.Path(path_type=Path, exists=True), required=True)
+@click.option(
+    "--old",
+    type=click.Path(path_type=Path, exists=True),
+    help="A folder of NAME.nisp by the older encoder.",
+)
 @models_options(RESULTS)
-def main(old: Path, models: Path, assets: Path, only: tuple[str, ...], output: Path) -> None:
+def main(old: Path | None, models: Path, assets: Path, only: tuple[str, ...], output: Path) -> None:
     """Measure what is not measured yet, and print asked against measured."""
     records = measured(models, assets, only, output, partial(record, old))
     for each in asked({"assets": records}):
         click.echo(each.line())
 
 
-def record(old: Path, model: Path, original: Path) -> Record:
-    """The shares of one file, those of the one of the same name in `old`, and what holds them."""
+def record(old: Path | None, model: Path, original: Path) -> Record:
+    """The shares of one file, those of the one of the same name in `old`, and new by old."""
     asset = Original.of(load_mesh(original))
-    return {**shares(asset, model), "old": shares(asset, old / model.name)}
+    found, before = shares(asset, model), shares(asset, old / model.name) if old else {}
+    return {**found, "old": before, "ratios": ratios(found, before)}
 
 
 def shares(original: Original, path: Path) -> Record:
@@ -172,6 +175,12 @@ def shares(original: Original, path: Path) -> Record:
     document = unpack(path.read_bytes())
     held = [*(["field"] if document.field else []), *(["meshes"] if document.meshes else [])]
     return {"held_as": " and ".join(held), **specks(original, NispModel(document))}
+
+
+def ratios(new: Record, old: Record) -> dict[str, float]:
+    """Specks by those of the old file: no specks are 0 of any, others of an unknown one nothing."""
+    known = [look for look in LOOKS if look in old or not new[look]]
+    return {look: new[look] / max(old.get(look, 0), 1 / SAMPLES) for look in known}
 
 
 if __name__ == "__main__":

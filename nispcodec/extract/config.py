@@ -104,6 +104,7 @@ class ComponentConfig:
 class SeamConfig:
     """Where charts meet.
 
+    splits          rounds in which edges get a vertex where a third chart shows between their ends
     small_area      a patch of one chart that is smaller is a mistake of the field ...
     small_vertices  ... and so is one of fewer vertices
     votes           rounds in which neighbors decide whose it is
@@ -111,6 +112,7 @@ class SeamConfig:
     clearance       share of an edge that cuts keep from its ends: no needles, no empty triangles
     """
 
+    splits: int = 8
     small_area: float = 1.2e-4
     small_vertices: int = 2
     votes: int = 3

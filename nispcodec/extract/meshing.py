@@ -11,6 +11,7 @@ from nispcodec.core.arrays import Int32Array
 from nispcodec.core.asset import TexturedMesh
 from nispcodec.core.document import Document, Field
 from nispcodec.core.network import Network
+from nispcodec.extract.border_edges import with_borders_told
 from nispcodec.extract.coarser_parts import coarser
 from nispcodec.extract.components import (
     ExtractionReport,
@@ -192,8 +193,9 @@ def _cut(
     if field.chart is None:
         cut, charts = surface, np.zeros(len(surface.faces), np.int32)
     else:
-        charts = vertex_charts(field.chart, surface, config.seams)
-        cut, charts = cut_along_seams(field.sdf, field.chart, surface, charts, config.seams)
+        told = with_borders_told(field.sdf, field.chart, surface, config.seams)
+        charts = vertex_charts(field.chart, told, config.seams)
+        cut, charts = cut_along_seams(field.sdf, field.chart, told, charts, config.seams)
     return without_slivers(field.sdf, cut, charts, config.slivers) if simple else (cut, charts)
 
 

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from benchmarks.studies.specks import Original, asked, of_mesh, seen_points
+from benchmarks.studies.specks import Original, asked, of_mesh, ratios, seen_points
 from nispcodec.core.asset import Texture, TexturedMesh
 from nispcodec.core.texture import encode_image
 from nispcodec.metrics.surface import Surface
@@ -85,6 +85,11 @@ def test_hidden_places_are_not_asked() -> None:
 
 
 def test_half_of_the_old_specks_are_asked_for() -> None:
-    old = {"mesh": 2e-4, "queries": 0.0}
-    assets = {"cup": {"mesh": 1.1e-4, "queries": 0.0, "old": old}}
-    assert [each.verdict for each in asked({"assets": assets})] == ["missed", "met"]
+    new, old = {"mesh": 1.1e-4, "queries": 0.0}, {"mesh": 2e-4, "queries": 0.0}
+    assert verdicts(new, old) == ["missed", "met"]
+    assert verdicts(new | {"mesh": 0.9e-4}, old) == ["met", "met"]
+    assert verdicts(new, {}) == ["not measured", "met"]
+
+
+def verdicts(new: dict[str, float], old: dict[str, float]) -> list[str]:
+    return [each.verdict for each in asked({"assets": {"cup": {"ratios": ratios(new, old)}}})]
