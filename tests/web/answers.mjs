@@ -11,6 +11,8 @@ function pixels({ width, height, floats }) {
 }
 
 const requests = JSON.parse(readFileSync(process.argv[2], "utf8"));
+// As where a security policy forbids it.
+if (requests.some(({ kernel }) => kernel === "plain")) delete globalThis.WebAssembly;
 const answers = [];
 for (const { path, points, images, kernel } of requests) {
   answers.push(await answer(new Uint8Array(readFileSync(path)), points, kernel, async () => images.map(pixels)));

@@ -64,11 +64,13 @@ def answers(requests: list[dict[str, Any]], folder: Path) -> list[dict[str, Any]
 
 
 def answers_in_browser(requests: list[dict[str, Any]], folder: Path) -> list[dict[str, Any]]:
-    """The same in headless Chromium, in a page whose policy allows its own script alone."""
+    """The same in headless Chromium, in a page whose policy allows its own script alone,
+    and WebAssembly but for a plain kernel."""
     npm_package("playwright-core")
     script = bundled(HERE / "answers_in_page.js")
     known = b64encode(sha256(script.encode()).digest()).decode()
-    policy = f"default-src 'none'; script-src 'sha256-{known}' 'wasm-unsafe-eval'"
+    wasm = "" if requests[0]["kernel"] == "plain" else "'wasm-unsafe-eval'"
+    policy = f"default-src 'none'; script-src 'sha256-{known}' {wasm}"
     head = f'<meta http-equiv="Content-Security-Policy" content="{policy}">'
     page, path = folder / "page.html", folder / "requests.json"
     page.write_text(f"<!doctype html>{head}<script>{script}</script>")

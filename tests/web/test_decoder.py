@@ -45,7 +45,9 @@ def request_of(path: Path, kernel: str) -> dict[str, Any]:
     return {"path": str(path), "points": points, "images": found, "kernel": kernel}
 
 
-@pytest.fixture(scope="module", params=["node wasm", "node plain", "chromium wasm"])
+@pytest.fixture(
+    scope="module", params=["node wasm", "node plain", "chromium wasm", "chromium plain"]
+)
 def found(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Any:
     """Answers by name of the file, for either way of computing."""
     program, kernel = request.param.split()

@@ -16,7 +16,7 @@ const FAR = 1e6;
 /**
  * Where a copy has a point of its part, as a function of points of the part's grid.
  * @param {import("../decoder/mesh/part.js").MeshPart} part
- * @param {import("../decoder/mesh/placements.js").Placement} placement
+ * @param {import("../decoder/mesh/part.js").Placement} placement
  * @returns {(x: number, y: number, z: number, found: Float64Array|Float32Array, at: number) => void}
  */
 export function placer({ step, origin }, placement) {
@@ -31,7 +31,7 @@ export function placer({ step, origin }, placement) {
   };
 }
 
-/** Scale, rotation and mirror, row by row (9). @param {import("../decoder/mesh/placements.js").Placement} placement */
+/** Scale, rotation and mirror, row by row (9). @param {import("../decoder/mesh/part.js").Placement} placement */
 export function matrixOf({ rotation, scale, mirrored }) {
   const length = Math.hypot(...rotation);
   const [w, x, y, z] = rotation.map((part) => part / length);
@@ -75,7 +75,7 @@ export function placedTriangles(parts) {
 /**
  * One copy, from a face on.
  * @param {import("../decoder/mesh/part.js").MeshPart} part
- * @param {import("../decoder/mesh/placements.js").Placement} placement
+ * @param {import("../decoder/mesh/part.js").Placement} placement
  * @param {PlacedTriangles} all
  * @param {number} first
  */

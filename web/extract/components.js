@@ -1,5 +1,5 @@
 import { EXTRACTION } from "./config.js";
-import { DisjointSets } from "../decoder/groups.js";
+import { DisjointSets } from "./groups.js";
 import { everyFew, slopesAt } from "./surface_blocks.js";
 
 /**

@@ -1,11 +1,10 @@
-import { DisjointSets } from "../decoder/groups.js";
-import { cross, sideAfter } from "../decoder/mesh/integers.js";
 import { cornerOrder, matrixOf, placer } from "../evaluate/placed.js";
 import { EXTRACTION } from "./config.js";
+import { DisjointSets } from "./groups.js";
 
 /**
  * @typedef {import("../decoder/mesh/part.js").MeshPart} MeshPart
- * @typedef {import("../decoder/mesh/placements.js").Placement} Placement
+ * @typedef {import("../decoder/mesh/part.js").Placement} Placement
  * @typedef {object} SplitPart a part with one vertex for each position, normal and texture coordinate that meet
  * @property {Int32Array} vertices (3 m) of the corners
  * @property {number[]} sources a corner of each vertex
@@ -91,6 +90,17 @@ function sharpSides({ faces, twin, positions }) {
     const [a, b] = [normals[Math.floor(side / 3)], normals[Math.floor(other / 3)]];
     return dot(a, b) < EXTRACTION.smoothCosine * Math.hypot(...a) * Math.hypot(...b) ? 1 : 0;
   });
+}
+
+/** The side of the same face so many steps on. @param {number} side @param {number} [steps] 1 or 2 */
+function sideAfter(side, steps = 1) {
+  const place = side % 3;
+  return side - place + ((place + steps) % 3);
+}
+
+/** @param {number[]} a @param {number[]} b */
+function cross(a, b) {
+  return [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
 }
 
 /** As long as twice the face's area, in units of the grid. @param {Int32Array} faces @param {Int32Array} positions @param {number} corner the face's first */

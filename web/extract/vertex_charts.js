@@ -1,5 +1,5 @@
 import { EXTRACTION } from "./config.js";
-import { DisjointSets } from "../decoder/groups.js";
+import { DisjointSets } from "./groups.js";
 
 /**
  * @typedef {import("./isosurface.js").Surface} Surface
