@@ -141,7 +141,8 @@ class FormConfig:
     surely_smaller_fine   ... but for assets of fine detail, whose networks are the largest there
                      are: two such fits ended within an eighth of what the probe said
     surely_larger    share of them from which on networks are
-    measured_faces   of the surface of a field at most, when its errors are measured: seconds
+    measured_faces   of the surface of a field at most, when its errors are measured: what a decode
+                     spends on thin walls, which a coarser grid tears
     fitted           share of the probe's error that an SDF of the preset `balanced` is left with
     negligible       distances below this are as good as none ...
     negligible_uv    ... and UV errors below this
@@ -180,7 +181,7 @@ class FormConfig:
     surely_smaller: float = 0.5
     surely_smaller_fine: float = 0.8
     surely_larger: float = 1.4
-    measured_faces: float = 150_000
+    measured_faces: float = 500_000
     fitted: float = 0.35
     negligible: float = 1e-4
     negligible_uv: float = 5e-4
