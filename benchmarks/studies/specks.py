@@ -119,10 +119,13 @@ def luminance(colors: Float32Array) -> Float64Array:
 
 
 def of_mesh(original: Original, decoded: Surface, samples: int) -> dict[str, float]:
-    """Share of the smooth surface of a decoded mesh that are specks, and what share is smooth."""
-    drawn = decoded.sample(samples, np.random.default_rng([0, 1]))
+    """Share of the smooth surface of a decoded mesh that are specks, and what share is smooth.
+
+    What nobody sees, of either, is left out.
+    """
+    drawn = seen(decoded, decoded.sample(samples, np.random.default_rng([0, 1])))
     closest = original.surface.closest(drawn.positions)
-    smooth = original.smooth(closest)
+    smooth = original.smooth(closest) & sides_of(original.surface, closest).outer
     drawn, closest = drawn[smooth], closest[smooth]
     found = original.specks(drawn.positions, closest, luminance(color_at(decoded, drawn)))
     return {"mesh": float(found.mean()), "smooth": float(smooth.mean())}
@@ -131,8 +134,13 @@ def of_mesh(original: Original, decoded: Surface, samples: int) -> dict[str, flo
 def seen_points(original: Original, samples: int) -> SurfacePoints:
     """Smooth points of an original to ask for colors, those left out that nobody sees."""
     drawn = original.surface.sample(samples, np.random.default_rng([0, 2]))
-    seen = drawn[sides_of(original.surface, drawn).outer]
-    return seen[original.smooth(seen)]
+    points = seen(original.surface, drawn)
+    return points[original.smooth(points)]
+
+
+def seen(surface: Surface, points: SurfacePoints) -> SurfacePoints:
+    """Those of the points on a surface that are not hidden within it."""
+    return points[sides_of(surface, points).outer]
 
 
 def specks(original: Original, model: NispModel, samples: int = SAMPLES) -> dict[str, float]:
