@@ -197,7 +197,7 @@ class Choice:
         elif target:
             found = self._of_target_size
         else:
-            found = self._form.best(min(errors.distance, self._nearest), most)
+            found = self._sound_rival(errors, most)
         if found is None or not self._forms.is_sound(found.errors):
             return None
         meshes = replace(field, field=None, meshes=found.parts)
@@ -215,6 +215,17 @@ class Choice:
         if self._triangle_bytes > refused.found:
             least = min(refused.least, self._triangle_bytes)
             raise TargetSizeError(least, refused.found) from refused
+
+    def _sound_rival(self, errors: Errors, most: float) -> Candidate:
+        """Triangles about as near as networks; nearer ones where those lose or make up surface too.
+
+        Of so many bytes, if any. Where the preset pays for near ones, these at once.
+        """
+        if self._worth <= 1:
+            found = self._form.about(errors.distance)
+            if self._forms.is_sound(found.errors):
+                return found
+        return self._form.best(min(errors.distance, self._nearest), most)
 
     def triangles(self) -> Chosen:
         """The asset as triangles, as near as the preset or the target asks.

@@ -161,16 +161,25 @@ def test_the_best_preset_takes_more_bytes_for_triangles_that_are_near() -> None:
 
 def test_triangles_are_worth_more_bytes_where_the_field_makes_up_surface() -> None:
     webbed = replace(OFF, made_up=FarPoints(1000, np.zeros((50, 3)), np.zeros(50, np.int32)))
-    dear, form = Tuning(forms=FormConfig(most_worth=1e3)), Told(10.0 * SIZE, best=candidate())
+    dear, form = Tuning(forms=FormConfig(most_worth=1e3)), Told(10.0 * SIZE, about=candidate())
     taken = choice(form, tuning=dear).after_fit(FIELD, webbed)
     assert taken.document.meshes == (PART,)
     assert (taken.other_bytes, taken.other_made_up) == (SIZE, 0.05)
-    cheap, form = Tuning(forms=FormConfig(most_worth=1e-3)), Told(10.0 * SIZE, best=candidate())
+    cheap, form = Tuning(forms=FormConfig(most_worth=1e-3)), Told(10.0 * SIZE, about=candidate())
     kept = choice(form, tuning=cheap).after_fit(FIELD, webbed)
     assert (kept.document, kept.other_made_up) == (FIELD, 0.0)
-    no_better = Told(10.0 * SIZE, best=candidate(webbed))
+    no_better = Told(10.0 * SIZE, about=candidate(webbed), best=candidate(webbed))
     kept = choice(no_better, tuning=dear).after_fit(FIELD, webbed)
     assert kept.document is FIELD
+
+
+def test_where_triangles_as_near_make_up_surface_too_nearer_ones_are_taken() -> None:
+    webbed = replace(OFF, made_up=FarPoints(1000, np.zeros((50, 3)), np.zeros(50, np.int32)))
+    for about, asked in ((candidate(), ["about"]), (candidate(webbed), ["about", "best"])):
+        form = Told(10.0 * SIZE, about=about, best=candidate())
+        dear = Tuning(forms=FormConfig(most_worth=1e3))
+        assert choice(form, tuning=dear).after_fit(FIELD, webbed).document.meshes == (PART,)
+        assert [name for name, *_ in form.asked] == asked
 
 
 def test_larger_triangles_are_not() -> None:
