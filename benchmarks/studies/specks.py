@@ -2,9 +2,9 @@
 
     python -m benchmarks.studies.specks --old OLD --models NEW --assets ../shared/assets
 
-OLD and NEW hold NAME.nisp for the assets NAME, by an older encoder and by this one; both are
-decoded by this one. Without OLD nothing is compared, but where there are no specks at all. Results
-are kept asset by asset.
+NEW holds NAME.nisp for the assets NAME, OLD holds NAME.glb: what an older build decoded its own
+files to, as the format was another then. So meshes are compared, and queries only where they have
+no specks at all. Results are kept asset by asset.
 
 A point is a speck where its luminance is more than `OFF` from that of the original, which is
 smooth there, and from all that the original shows within `ALLOWED` of it. Smooth is where one chart
@@ -161,7 +161,7 @@ def asked(results: Record) -> Iterator[Asked]:
 @click.option(
     "--old",
     type=click.Path(path_type=Path, exists=True),
-    help="A folder of NAME.nisp by the older encoder.",
+    help="A folder of NAME.glb that the older build decoded.",
 )
 @models_options(RESULTS)
 def main(old: Path | None, models: Path, assets: Path, only: tuple[str, ...], output: Path) -> None:
@@ -174,7 +174,10 @@ def main(old: Path | None, models: Path, assets: Path, only: tuple[str, ...], ou
 def record(old: Path | None, model: Path, original: Path) -> Record:
     """The shares of one file, those of the one of the same name in `old`, and new by old."""
     asset = Original.of(load_mesh(original))
-    found, before = shares(asset, model), shares(asset, old / model.name) if old else {}
+    found, before = shares(asset, model), {}
+    if old:
+        decoded = load_mesh(old / model.with_suffix(".glb").name)
+        before = of_mesh(asset, Surface.of(decoded, asset.frame), SAMPLES)
     return {**found, "old": before, "ratios": ratios(found, before)}
 
 
