@@ -20,7 +20,7 @@ class Split:
     """A half for networks, and one for triangles.
 
     dense   the half for networks, as triangles: what networks are measured against
-    meshes  the other half, which has such a `share` of the area that is seen
+    meshes  the other half, which has such a `share` of the area that both have by themselves
     """
 
     field: FieldForm
@@ -52,7 +52,7 @@ def split(whole: FieldForm, found: Sorted) -> Split | None:
         field=replace(whole, analysis=dense),
         dense=MeshForm(dense, seed, config, whole.progress),
         meshes=MeshForm(others, seed, config, whole.progress),
-        share=_seen_share(analysis, found.other),
+        share=_outer_area(others) / (_outer_area(dense) + _outer_area(others)),
     )
 
 
@@ -64,7 +64,6 @@ def _open_share(analysis: Analysis, faces: BoolArray) -> float:
     return float(sizes[solid.open_surface[own]].sum() / sizes.sum())
 
 
-def _seen_share(analysis: Analysis, faces: BoolArray) -> float:
-    """The share of some faces (m,) bool in the area that an analysis does not have as hidden."""
-    sizes = area(analysis.solid.pieces)
-    return float(sizes[faces[analysis.solid.parents]].sum() / sizes.sum())
+def _outer_area(analysis: Analysis) -> float:
+    """The area that an analysis does not have as hidden."""
+    return float(area(analysis.solid.pieces).sum())

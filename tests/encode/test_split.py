@@ -54,6 +54,16 @@ def test_bodies_that_others_close_are_not_torn_from_them() -> None:
     assert split(whole(mesh), sorted_by(np.arange(len(mesh.faces)) < len(bowl))) is None
 
 
+def test_bodies_that_are_seen_through_an_opening_alone_have_a_share_of_the_area() -> None:
+    """A small box in one without a lid: as a whole it is inside, and has no outer surface."""
+    box = cube((-1.0, -1.0, -1.0), 2.0)
+    cup = box[~(box[..., 2] == 1).all(axis=1)]
+    mesh = soup(np.concatenate([cup, cube((-0.25, -0.25, -0.9), 0.5)]))
+    found = split(whole(mesh), sorted_by(np.arange(len(mesh.faces)) < len(cup)))
+    assert found is not None
+    assert found.share == pytest.approx(1.5 / (20 + 1.5), rel=0.1)
+
+
 @pytest.mark.slow
 def test_both_forms_are_one_file() -> None:
     mesh = mixed()
