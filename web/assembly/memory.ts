@@ -38,27 +38,21 @@ export class Bytes {
   }
 }
 
-/** Integers of 32 bits, one after the other. */
+/** Numbers of one kind, one after the other. */
 @unmanaged
-export class Ints {
-  @inline @operator("[]") get(at: i32): i32 {
-    return load<i32>(changetype<usize>(this) + (<usize>at << 2));
+export class Items<T> {
+  @inline @operator("[]") get(at: i32): T {
+    return load<T>(changetype<usize>(this) + (<usize>at << alignof<T>()));
   }
-  @inline @operator("[]=") set(at: i32, value: i32): void {
-    store<i32>(changetype<usize>(this) + (<usize>at << 2), value);
+  @inline @operator("[]=") set(at: i32, value: T): void {
+    store<T>(changetype<usize>(this) + (<usize>at << alignof<T>()), value);
   }
 }
 
-/** Doubles, one after the other. */
-@unmanaged
-export class Floats {
-  @inline @operator("[]") get(at: i32): f64 {
-    return load<f64>(changetype<usize>(this) + (<usize>at << 3));
-  }
-  @inline @operator("[]=") set(at: i32, value: f64): void {
-    store<f64>(changetype<usize>(this) + (<usize>at << 3), value);
-  }
-}
+/** Integers of 32 bits. */
+export type Ints = Items<i32>;
+/** Doubles. */
+export type Floats = Items<f64>;
 
 export function bytes(count: i32): Bytes {
   return changetype<Bytes>(reserve(count));
