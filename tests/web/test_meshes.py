@@ -12,10 +12,11 @@ import numpy as np
 import pytest
 
 from nispcodec.core.arrays import AnyArray
+from nispcodec.core.creases import fan_normals
 from nispcodec.core.document import Document
 from nispcodec.core.errors import FormatError
 from nispcodec.core.mesh_part import MeshPart
-from nispcodec.format import mesh, pack
+from nispcodec.format import mesh, pack, unpack
 from nispcodec.model import NispModel
 from tests.format.mesh.parts import box, grid, part
 from tests.web.mesh_documents import document as mesh_document
@@ -197,6 +198,34 @@ def test_normals_are_smooth_between_creases_whatever_the_triangles(tmp_path: Pat
         ways = [sides] if sides[0] > 0 else [sides * (1, 0, 0), sides * (0, 1, 1)]
         assert min(np.abs(normal - way / np.linalg.norm(way)).max() for way in ways) < 1e-6
     assert len(positions) == 4 + 2 * 4
+
+
+def test_shading_is_the_library_s_whatever_meets_in_an_edge(tmp_path: Path) -> None:
+    shapes = [two_walls(), *(one_material(each) for each in random_parts(12))]
+    paths = [tmp_path / f"{number}.nisp" for number in range(len(shapes))]
+    for made, path in zip(shapes, paths, strict=True):
+        path.write_bytes(pack(mesh_document(replace(made, step=0.05))))
+    for found, path in zip(
+        json.loads(run_node(HERE / "meshes.mjs", "--extract", *paths)), paths, strict=True
+    ):
+        held = unpack(path.read_bytes()).meshes[0]
+        order = np.argsort(held.chart_has_uv[held.face_charts], kind="stable")
+        corners = held.normalized()[held.faces]
+        rows, fans = fan_normals(held.faces.astype(np.int64), corners, held.shading_breaks)
+        ours = np.reshape(found["normals"], (-1, 3))[np.reshape(found["indices"], (-1, 3))]
+        assert np.abs(ours - rows[fans[order]]).max() < 1e-4
+
+
+def two_walls() -> MeshPart:
+    """An upright wall and a floor that meet in a point alone, without creases."""
+    floor = [[2, 2, 0], [4, 2, 0], [4, 4, 0], [2, 4, 0]]
+    wall = [[2, 2, 2], [2, 0, 2], [2, 0, 0]]
+    faces = np.array([[0, 1, 2], [0, 2, 3], [0, 4, 5], [0, 5, 6]])
+    return part(np.array(floor + wall), faces)
+
+
+def one_material(made: MeshPart) -> MeshPart:
+    return replace(made, chart_materials=np.zeros_like(made.chart_materials))
 
 
 def test_a_mixed_file_has_both_surfaces(tmp_path: Path) -> None:

@@ -27,10 +27,9 @@ let faceCharts: Ints = changetype<Ints>(0);
 let chartHasUv: Ints = changetype<Ints>(0);
 
 /**
- * Reads a part, and gives it away: numbers, then positions, UVs, faces, UVs of faces, sides that
- * meet, charts of faces, creases, sheets, materials of charts and whether they have UVs; then its
- * placements, where it has more than the plain one. How many faces, placements and materials may
- * follow, of `most`.
+ * Reads a part, and gives it away: numbers, then positions, UVs, UVs of faces, faces, charts of
+ * faces, creases, sheets, materials of charts and whether they have UVs; then its placements, where
+ * it has more than the plain one. How many faces, placements and materials may follow, of `most`.
  */
 export function readPart(most: i32): i32 {
   const start = mark();
@@ -52,7 +51,6 @@ export function readPart(most: i32): i32 {
   const materials = readCharts(charts, materialBits);
   readTexture(uvSize);
   giveInts(changetype<usize>(faces), sides);
-  giveInts(changetype<usize>(twin), sides);
   giveInts(changetype<usize>(faceCharts), faceCount);
   giveInts(changetype<usize>(creases), sides);
   giveInts(changetype<usize>(sheets), faceCount);

@@ -37,4 +37,6 @@ export const EXTRACTION = Object.freeze({
   clearance: 0.02,
   // Mesh parts: where none of its edges is a crease, one is where normals lean by more than 45 degrees.
   smoothCosine: Math.SQRT1_2,
+  // Sides of one edge that are compared with each other: two, but for what touches there.
+  edgeSides: 8,
 });

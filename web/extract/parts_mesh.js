@@ -62,34 +62,65 @@ function splitPart(part) {
 
 /** A number for the corners (3 m) at a vertex that no crease parts. @param {MeshPart} part */
 function smoothGroups(part) {
-  const { faces, twin, positions } = part;
-  const creases = part.creases.some(Boolean) ? part.creases : sharpSides(part);
+  const { faces } = part;
+  const pairs = sidePairs(faces);
+  const cosines = pairCosines(part, pairs);
+  const creases = part.creases.some(Boolean) ? part.creases : sharpSides(faces.length, pairs, cosines);
+  const others = new Int32Array(faces.length);
+  for (const [mine] of pairs) others[mine]++;
   const sets = new DisjointSets(faces.length);
-  const border = new Int32Array(positions.length / 3).fill(-1);
-  const joinAt = (/** @type {number} */ corner) => {
-    const vertex = faces[corner];
-    if (border[vertex] < 0) border[vertex] = corner;
-    sets.join(border[vertex], corner);
-  };
-  twin.forEach((other, side) => {
-    if (creases[side]) return;
-    if (other >= 0) sets.join(side, sideAfter(other));
-    else {
-      joinAt(side);
-      joinAt(sideAfter(side));
-    }
+  pairs.forEach(([mine, other], i) => {
+    // Of several sheets in one edge those go on into each other that face one way.
+    if (creases[mine] || creases[other] || (others[mine] > 1 && cosines[i] <= 0)) return;
+    const [first, second] = faces[mine] === faces[other] ? [other, sideAfter(other)] : [sideAfter(other), other];
+    sets.join(mine, first);
+    sets.join(sideAfter(mine), second);
   });
   return sets.labels().labels;
 }
 
-/** Sides where the surface turns sharply, for parts that say nothing about creases. @param {MeshPart} part */
-function sharpSides({ faces, twin, positions }) {
-  const normals = Array.from({ length: faces.length / 3 }, (_, face) => faceNormal(faces, positions, 3 * face));
-  return Uint8Array.from(twin, (other, side) => {
-    if (other < 0) return 0;
-    const [a, b] = [normals[Math.floor(side / 3)], normals[Math.floor(other / 3)]];
-    return dot(a, b) < EXTRACTION.smoothCosine * Math.hypot(...a) * Math.hypot(...b) ? 1 : 0;
+/** All pairs of sides of one edge, both ways, but of faces back to back. @param {Int32Array} faces @returns {[number, number][]} */
+function sidePairs(faces) {
+  /** @type {Map<number, number[]>} */
+  const edges = new Map();
+  faces.forEach((vertex, side) => {
+    const other = faces[sideAfter(side)];
+    const key = Math.min(vertex, other) * 2 ** 26 + Math.max(vertex, other);
+    const sides = edges.get(key);
+    if (sides) sides.push(side);
+    else edges.set(key, [side]);
   });
+  /** @type {[number, number][]} */
+  const pairs = [];
+  for (const sides of edges.values()) {
+    for (let turn = 1; turn < Math.min(sides.length, EXTRACTION.edgeSides); turn++) {
+      sides.forEach((mine, i) => {
+        const other = sides[(i + turn) % sides.length];
+        if (faces[sideAfter(mine, 2)] !== faces[sideAfter(other, 2)]) pairs.push([mine, other]);
+      });
+    }
+  }
+  return pairs;
+}
+
+/** Of the normals of both faces; 0 where one has no area. @param {MeshPart} part @param {[number, number][]} pairs */
+function pairCosines({ faces, positions }, pairs) {
+  const normals = Array.from({ length: faces.length / 3 }, (_, face) => faceNormal(faces, positions, 3 * face));
+  const lengths = normals.map((normal) => Math.hypot(...normal));
+  return pairs.map(([mine, other]) => {
+    const [one, two] = [Math.floor(mine / 3), Math.floor(other / 3)];
+    return dot(normals[one], normals[two]) / (lengths[one] * lengths[two] || 1);
+  });
+}
+
+/** Sides where the surface turns sharply, for parts that say nothing about creases. @param {number} count @param {[number, number][]} pairs @param {number[]} cosines */
+function sharpSides(count, pairs, cosines) {
+  const sharp = new Uint8Array(count);
+  for (const [mine] of pairs) sharp[mine] = 1;
+  pairs.forEach(([mine], i) => {
+    if (cosines[i] >= EXTRACTION.smoothCosine) sharp[mine] = 0;
+  });
+  return sharp;
 }
 
 /** The side of the same face so many steps on. @param {number} side @param {number} [steps] 1 or 2 */
@@ -110,7 +141,7 @@ function faceNormal(faces, positions, corner) {
   return cross(u, v);
 }
 
-/** Normals of groups of corners, weighted by area times angle, of unit length; 0 where they cancel. @param {MeshPart} part @param {Int32Array} groups */
+/** Normals of groups of corners, weighted by area times angle, of unit length; +z where they cancel. @param {MeshPart} part @param {Int32Array} groups */
 function normalSums({ faces, positions }, groups) {
   const sums = new Float64Array(3 * faces.length);
   for (let corner = 0; corner < faces.length; corner += 3) {
@@ -121,8 +152,9 @@ function normalSums({ faces, positions }, groups) {
     }
   }
   for (let i = 0; i < sums.length; i += 3) {
-    const length = Math.hypot(sums[i], sums[i + 1], sums[i + 2]) || 1;
-    for (let axis = 0; axis < 3; axis++) sums[i + axis] /= length;
+    const length = Math.hypot(sums[i], sums[i + 1], sums[i + 2]);
+    if (!length) sums[i + 2] = 1;
+    for (let axis = 0; axis < 3 && length; axis++) sums[i + axis] /= length;
   }
   return sums;
 }

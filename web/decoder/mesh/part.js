@@ -14,10 +14,9 @@
  * Triangles on integer grids, and the copies of them.
  * @typedef {object} MeshPart
  * @property {Int32Array} positions (3 n) normalized frame: times step, plus origin
- * @property {Int32Array} faces (3 m)
+ * @property {Int32Array} faces (3 m) side 3 f + i runs from corner i on
  * @property {Int32Array} uvs (2 t) asset's UV: times uvStep, plus uvOrigin
  * @property {Int32Array} uvFaces (3 m) -1 on faces without
- * @property {Int32Array} twin (3 m) the side that each meets, or -1; side 3 f + i runs from corner i on
  * @property {Int32Array} faceCharts (m)
  * @property {Int32Array} chartMaterials (k)
  * @property {boolean[]} chartHasUv (k)
@@ -42,13 +41,12 @@ const PLAIN = Float64Array.of(1, 0, 0, 0, 0, 0, 0, 1, 0, 1, 1, 0, 0, 0);
 /** @param {Given} given @param {Given[]} placements @returns {MeshPart} */
 export function partOf({ numbers, lists }, placements) {
   const [step, ...others] = numbers;
-  const [positions, uvs, uvFaces, faces, twin, faceCharts, creases, sheet, chartMaterials, chartHasUv] = lists;
+  const [positions, uvs, uvFaces, faces, faceCharts, creases, sheet, chartMaterials, chartHasUv] = lists;
   return {
     positions,
     faces,
     uvs,
     uvFaces,
-    twin,
     faceCharts,
     chartMaterials,
     chartHasUv: Array.from(chartHasUv, Boolean),
