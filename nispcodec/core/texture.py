@@ -57,6 +57,14 @@ _SHARP: dict[str, dict[str, Any]] = {
 }
 
 
+def what_is_broken(why: Exception) -> str:
+    """Name what Pillow raised for a file; it calls bytes that it does not know by their address."""
+    import PIL
+
+    unknown = isinstance(why, PIL.UnidentifiedImageError)
+    return "bytes that make no image" if unknown else str(why)
+
+
 def image_size(texture: Texture) -> tuple[int, int]:
     """Width and height in pixels, by the image's header alone.
 
@@ -71,7 +79,9 @@ def image_size(texture: Texture) -> tuple[int, int]:
         ):
             return image.size
     except (*BROKEN_IMAGE, PIL.Image.DecompressionBombError) as why:
-        raise MeshError(f"texture {texture.name}: expected an image, found: {why}") from why
+        raise MeshError(
+            f"texture {texture.name}: expected an image, found: {what_is_broken(why)}"
+        ) from why
 
 
 def decode_image(texture: Texture) -> Float32Array:
@@ -95,7 +105,9 @@ def decode_image(texture: Texture) -> Float32Array:
         PIL.Image.DecompressionBombWarning,
         PIL.Image.DecompressionBombError,
     ) as why:
-        raise MeshError(f"texture {texture.name}: expected an image, found: {why}") from why
+        raise MeshError(
+            f"texture {texture.name}: expected an image, found: {what_is_broken(why)}"
+        ) from why
 
 
 def data_maps(materials: Iterable[Material]) -> frozenset[int]:

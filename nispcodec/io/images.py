@@ -15,7 +15,7 @@ import PIL.Image
 from nispcodec.core.arrays import Uint16Array
 from nispcodec.core.asset import Texture
 from nispcodec.core.errors import MeshError, NispError
-from nispcodec.core.texture import BROKEN_IMAGE
+from nispcodec.core.texture import BROKEN_IMAGE, what_is_broken
 from nispcodec.io.ktx2 import is_ktx2, png_of_ktx2
 
 # The formats that stay as they are, by Pillow's name.
@@ -197,8 +197,8 @@ def _pillow(place: str) -> Iterator[None]:
             f"{found[0] if found else 'more'} (8192 x 8192 can be read)"
         ) from why
     except BROKEN_IMAGE as why:
-        reason = str(why).split("<_io")[0]
-        raise MeshError(f"{place}: expected an image that can be decoded, found: {reason}") from why
+        broken = what_is_broken(why)
+        raise MeshError(f"{place}: expected an image that can be decoded, found: {broken}") from why
 
 
 def _stem(name: str) -> str:

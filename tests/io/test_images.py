@@ -103,6 +103,13 @@ def test_a_damaged_image_is_left_out_and_named(format: str) -> None:
         assert textures.textures == []
 
 
+def test_bytes_that_are_no_image_are_called_that() -> None:
+    textures, warnings = shelf()
+    textures.add("wood.x", b"not an image", "wood.x")
+    found = "expected an image that can be decoded, found: bytes that make no image"
+    assert warnings == [f"wood.x: {found}: left out"]
+
+
 def test_a_jpeg_that_is_cut_short_is_kept() -> None:
     whole = noise_image("JPEG")
     textures, warnings = shelf()
