@@ -1,5 +1,6 @@
 import { readContainer } from "./container.js";
-import { demand } from "./errors.js";
+import { ByteReader } from "./bytes.js";
+import { Place } from "./errors.js";
 import { MAX_CHARTS } from "./enumerations.js";
 import { readMesh } from "./mesh/section.js";
 import { readMetadata } from "./metadata.js";
@@ -20,6 +21,7 @@ import { readWeights } from "./weights.js";
 
 /** Sections that this decoder understands. A new critical section is a line here and one below. */
 const KNOWN = ["MESH", "META", "NETS", "TXTR"];
+const NO_BYTES = new Uint8Array(0);
 
 /**
  * Parses and checks a file. Throws NISPError for a malformed one.
@@ -28,20 +30,19 @@ const KNOWN = ["MESH", "META", "NETS", "TXTR"];
  */
 export function parseNISP(file) {
   const sections = readContainer(file, KNOWN);
-  const content = (/** @type {string} */ code) => {
+  /** Of a section that must be there exactly where there is what it is for. */
+  const content = (/** @type {string} */ code, /** @type {boolean} */ wanted, users = "") => {
     const section = sections.get(code);
-    demand(section, code, "section", "present", "absent");
-    return section.content;
+    new Place(code).demand(!section !== wanted, "section", wanted ? "present" : `absent without ${users}`, section ? "present" : "absent");
+    return section?.content ?? NO_BYTES;
   };
-  const metadata = readMetadata(content("META"));
+  const metadata = readMetadata(content("META", true));
   const fitted = metadata.specs.size > 0;
-  demand(fitted || !sections.has("NETS"), "NETS", "section", "absent without networks", "present");
-  const { tensors, lengths } = fitted ? readWeights(content("NETS"), metadata.specs) : { tensors: new Map(), lengths: new Map() };
-  const parts = sections.has("MESH") || !fitted ? readMesh(content("MESH")) : [];
+  const { tensors, lengths } = readWeights(content("NETS", fitted, "networks"), metadata.specs);
+  const parts = sections.has("MESH") || !fitted ? readMesh(content("MESH", true)) : [];
   const charts = chartsOf(metadata, parts);
   const textured = metadata.textures.length > 0;
-  demand(textured || !sections.has("TXTR"), "TXTR", "section", "absent without textures", "present");
-  const images = textured ? readImages(content("TXTR"), metadata.textures) : [];
+  const images = readImages(content("TXTR", textured, "textures"), metadata.textures);
   const bytes = new Map([...sections].map(([code, section]) => [code, section.stored]));
   for (const [name, length] of lengths) bytes.set(`NETS.${name}`, length);
   return { metadata, tensors, parts, ...charts, images, bytes };
@@ -50,7 +51,8 @@ export function parseNISP(file) {
 /** Materials, and whether with texture coordinates, of all charts. @param {Metadata} metadata @param {import("./mesh/part.js").MeshPart[]} parts */
 function chartsOf(metadata, parts) {
   const count = parts.reduce((sum, part) => sum + part.placements.length * part.chartHasUv.length, metadata.charts);
-  demand(count <= MAX_CHARTS, "MESH", "charts", `at most ${MAX_CHARTS} with all copies`, count);
+  const place = new Place("MESH");
+  place.limit("charts of all copies", count, MAX_CHARTS);
   const chartMaterials = new Int32Array(count);
   chartMaterials.set(metadata.chartMaterials);
   const chartHasUv = metadata.chartHasUv.slice();
@@ -61,7 +63,7 @@ function chartsOf(metadata, parts) {
     }
   }
   const highest = chartMaterials.reduce((most, material) => Math.max(most, material), 0);
-  demand(highest < metadata.materials.length, "MESH", "materials", `below ${metadata.materials.length}`, highest);
+  place.limit("materials", highest, metadata.materials.length - 1);
   return { chartMaterials, chartHasUv };
 }
 
@@ -72,12 +74,7 @@ function chartsOf(metadata, parts) {
  */
 function readImages(data, entries) {
   const others = entries.reduce((sum, entry) => sum + (entry.length ?? 0), 0);
-  demand(others < data.length, "TXTR", "length", `more than ${others} bytes`, data.length);
-  let at = 0;
-  return entries.map(({ name, mime, length }) => {
-    const end = length === undefined ? data.length : at + length;
-    const image = { name, mime, data: data.subarray(at, end) };
-    at = end;
-    return image;
-  });
+  const reader = new ByteReader(data, "TXTR");
+  reader.demand(others < data.length || !entries.length, "bytes", `more than ${others}`, data.length);
+  return entries.map(({ name, mime, length = data.length - others }) => ({ name, mime, data: reader.bytes(length) }));
 }

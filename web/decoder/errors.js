@@ -14,15 +14,28 @@ export class NISPError extends Error {
   }
 }
 
-/**
- * Throws unless `holds`.
- * @param {unknown} holds
- * @param {string} section
- * @param {string} field
- * @param {unknown} expected
- * @param {unknown} [found]
- * @returns {asserts holds}
- */
-export function demand(holds, section, field, expected, found = "another value") {
-  if (!holds) throw new NISPError(section, field, expected, found);
+/** A part of a file, whose name is in the errors that it throws. */
+export class Place {
+  /** @param {string} section of the file, or "header" @param {string} [path] in it */
+  constructor(section, path = "") {
+    this.section = section;
+    this.path = path;
+  }
+
+  /**
+   * Throws unless `holds`.
+   * @param {unknown} holds
+   * @param {string} field
+   * @param {unknown} expected
+   * @param {unknown} [found]
+   */
+  demand(holds, field, expected, found = "something else") {
+    if (!holds) throw new NISPError(this.section, this.path + field, expected, found);
+  }
+
+  /** Throws unless a number is from `least` to `most`. @param {string} field @param {number} value @param {number} most @param {number} [least] */
+  limit(field, value, most, least = 0) {
+    const within = value >= least && value <= most;
+    if (!within) this.demand(false, field, `${least} to ${most}`, value);
+  }
 }

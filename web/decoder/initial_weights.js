@@ -14,10 +14,10 @@
  * @returns {Int32Array}
  */
 export function initialWeights(seed, first, count) {
-  const start = mixed([0, seed >>> 0]);
+  let state = plus(mixed([0, seed]), times(GOLDEN, [0, first]));
   const found = new Int32Array(count);
   for (let i = 0; i < count; i++) {
-    const state = plus(start, times(GOLDEN, [0, first + i + 1]));
+    state = plus(state, GOLDEN);
     found[i] = (mixed(state)[0] >>> 8) - 2 ** 23;
   }
   return found;

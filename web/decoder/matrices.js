@@ -1,4 +1,3 @@
-import { halfToNumber } from "./bytes.js";
 import { NUMBERS } from "./enumerations.js";
 
 /** @typedef {import("./bytes.js").ByteReader} Bytes */
@@ -35,38 +34,30 @@ function transposed(matrix, rows, columns) {
 /** @param {Bytes} reader @param {number} count @param {boolean} symbols */
 function readValues(reader, count, symbols) {
   const kind = readNumberKind(reader, symbols ? ["int8", "int16", "int32"] : ["float32", "float16"]);
-  const size = { float32: 4, float16: 2, int8: 1, int16: 2, int32: 4 }[kind] ?? 0;
-  const start = reader.skip(size * count);
-  const { view } = reader;
-  const read = {
-    float32: (/** @type {number} */ at) => view.getFloat32(at, true),
-    float16: (/** @type {number} */ at) => halfToNumber(view.getUint16(at, true)),
-    int8: (/** @type {number} */ at) => view.getInt8(at),
-    int16: (/** @type {number} */ at) => view.getInt16(at, true),
-    int32: (/** @type {number} */ at) => view.getInt32(at, true),
-  }[/** @type {"int8"} */ (kind)];
-  const values = new Float64Array(count);
-  for (let i = 0; i < count; i++) values[i] = read(start + size * i);
-  return values;
+  const size = { int8: 1, int16: 2, int32: 4 }[kind];
+  return Float64Array.from({ length: count }, () => (size ? signed(reader.uint(size), size) : reader.float(kind)));
+}
+
+/** @param {number} value without its sign @param {number} size in bytes */
+function signed(value, size) {
+  const unused = 32 - 8 * size;
+  return (value << unused) >> unused;
 }
 
 /** @param {Bytes} reader @param {string[]} allowed @returns {string} */
 export function readNumberKind(reader, allowed) {
-  const number = reader.uint8();
+  const number = reader.uint(1);
   const kind = NUMBERS[number - 1];
-  if (!allowed.includes(kind)) throw reader.error("number kind", allowed.join(" or "), kind ?? number);
+  reader.demand(allowed.includes(kind), "number kind", allowed.join(" or "), kind ?? number);
   return kind;
 }
 
 /** A list of indices of 0 to `most`. @param {Bytes} reader @param {number} count @param {number} most @param {string} field */
 function readIndices(reader, count, most, field) {
   const size = most < 2 ** 8 ? 1 : most < 2 ** 16 ? 2 : 4;
-  const start = reader.skip(size * count);
-  return Array.from({ length: count }, (_, i) => {
-    const at = start + size * i;
-    const { view } = reader;
-    const index = size === 1 ? view.getUint8(at) : size === 2 ? view.getUint16(at, true) : view.getUint32(at, true);
-    if (index > most) throw reader.error(field, `at most ${most}`, index);
+  return Array.from({ length: count }, () => {
+    const index = reader.uint(size);
+    reader.limit(field, index, most);
     return index;
   });
 }
@@ -74,10 +65,10 @@ function readIndices(reader, count, most, field) {
 /** @param {Bytes} reader @param {number} rows @param {number} columns */
 function cooPlaces(reader, rows, columns) {
   const count = reader.varint();
-  if (count > rows * columns) throw reader.error("count", `at most ${rows * columns}`, count);
+  reader.limit("count", count, rows * columns);
   let row = 0;
   const numbers = readIndices(reader, count, rows - 1, "row step").map((step) => (row += step));
-  if (row >= rows) throw reader.error("row", `below ${rows}`, row);
+  reader.limit("row", row, rows - 1);
   return placesOf(reader, numbers, columns);
 }
 
@@ -94,7 +85,7 @@ function placesOf(reader, rowNumbers, columns) {
   let column = 0;
   return rowNumbers.map((row, i) => {
     column = i > 0 && row === rowNumbers[i - 1] ? column + 1 + gaps[i] : gaps[i];
-    if (column >= columns) throw reader.error("column", `below ${columns}`, column);
+    reader.limit("column", column, columns - 1);
     return row * columns + column;
   });
 }
@@ -103,13 +94,13 @@ function placesOf(reader, rowNumbers, columns) {
 function diaPlaces(reader, rows, columns) {
   const count = reader.varint();
   const most = rows + columns - 2;
-  if (count > most + 1) throw reader.error("count", `at most ${most + 1}`, count);
+  reader.limit("count", count, most + 1);
   /** @type {number[]} */
   const places = [];
   let diagonal = -1;
   for (const gap of readIndices(reader, count, most, "diagonal gap")) {
     diagonal += gap + 1;
-    if (diagonal > most) throw reader.error("diagonal", `at most ${most}`, diagonal);
+    reader.limit("diagonal", diagonal, most);
     for (let row = 0; row < rows; row++) {
       const column = diagonal - (rows - 1) + row;
       if (column >= 0 && column < columns) places.push(row * columns + column);

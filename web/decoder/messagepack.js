@@ -20,39 +20,31 @@ const UTF8 = new TextDecoder("utf-8", { fatal: true, ignoreBOM: true });
  * @returns {unknown}
  */
 export function readCanonical(data, section) {
-  const decoder = new CanonicalDecoder(new ByteReader(data, section));
-  const value = decoder.value(1);
-  decoder.reader.end();
+  const reader = new CanonicalReader(data, section);
+  const value = reader.value(1);
+  reader.finish();
   return value;
 }
 
-class CanonicalDecoder {
-  /** @param {ByteReader} reader */
-  constructor(reader) {
-    this.reader = reader;
-    this.count = 0;
-  }
-
-  /** @param {boolean} holds @param {string} field @param {unknown} expected @param {unknown} found */
-  demand(holds, field, expected, found) {
-    if (!holds) throw this.reader.error(field, expected, found);
-  }
+class CanonicalReader extends ByteReader {
+  /** Values so far. */
+  count = 0;
 
   /** @param {number} depth @returns {unknown} */
   value(depth) {
-    this.demand(depth <= MAX_DEPTH, "nesting", `at most ${MAX_DEPTH}`, depth);
-    this.demand(++this.count <= MAX_VALUES, "values", `at most ${MAX_VALUES}`, this.count);
-    const tag = this.reader.uint8();
+    this.limit("nesting", depth, MAX_DEPTH);
+    this.limit("values", ++this.count, MAX_VALUES);
+    const tag = this.uint(1);
     if (tag < 0x80) return tag;
-    if (tag < 0x90) return this.map(tag & 15, depth);
-    if (tag < 0xa0) return this.array(tag & 15, depth);
-    if (tag < 0xc0) return this.text(tag & 31);
+    if (tag < 0x90) return this.#map(tag & 15, depth);
+    if (tag < 0xa0) return this.#array(tag & 15, depth);
+    if (tag < 0xc0) return this.#text(tag & 31);
     if (tag >= 0xe0) return tag - 256;
-    return this.tagged(tag, depth);
+    return this.#tagged(tag, depth);
   }
 
   /** @param {number} tag @param {number} depth @returns {unknown} */
-  tagged(tag, depth) {
+  #tagged(tag, depth) {
     switch (tag) {
       case 0xc2:
       case 0xc3:
@@ -60,108 +52,102 @@ class CanonicalDecoder {
       case 0xc4:
       case 0xc5:
       case 0xc6:
-        return this.reader.bytes(this.sized(tag - 0xc4, 0));
+        return this.bytes(this.#sized(tag - 0xc4, 0));
       case 0xca:
-        return this.float(this.reader.view.getFloat32(this.reader.skip(4)), true);
+        return this.#real(this.view.getFloat32(this.skip(4)), true);
       case 0xcb:
-        return this.float(this.reader.view.getFloat64(this.reader.skip(8)), false);
+        return this.#real(this.view.getFloat64(this.skip(8)), false);
       case 0xcc:
       case 0xcd:
       case 0xce:
-        return this.sized(tag - 0xcc, 0x80);
       case 0xcf:
-        return this.unsigned64();
+        return this.#sized(tag - 0xcc, 128);
       case 0xd0:
       case 0xd1:
       case 0xd2:
       case 0xd3:
-        return this.negative(tag - 0xd0);
+        return this.#negative(tag - 0xd0);
       case 0xd9:
       case 0xda:
       case 0xdb:
-        return this.text(this.sized(tag - 0xd9, 32));
+        return this.#text(this.#sized(tag - 0xd9, 32));
       case 0xdc:
       case 0xdd:
-        return this.array(this.sized(tag - 0xdb, 16), depth);
+        return this.#array(this.#sized(tag - 0xdb, 16, 1), depth);
       case 0xde:
       case 0xdf:
-        return this.map(this.sized(tag - 0xdd, 16), depth);
+        return this.#map(this.#sized(tag - 0xdd, 16, 1), depth);
     }
-    throw this.reader.error("type", "a type of the format", `0x${tag.toString(16)}`);
+    this.demand(false, "type", "one of the format", `0x${tag.toString(16)}`);
+  }
+
+  /** A big-endian integer of 1, 2, 4 or 8 bytes: two to a power. @param {number} power @param {boolean} [signed] @returns {number} */
+  #integer(power, signed = false) {
+    if (power === 3) return this.#integer(2, signed) * 2 ** 32 + this.#integer(2);
+    const bytes = this.bytes(1 << power);
+    return bytes.reduce((value, byte) => value * 256 + byte, signed && bytes[0] > 127 ? -1 : 0);
   }
 
   /**
-   * A big-endian uint of 1, 2 or 4 bytes (power 0 to 2) that no shorter form could hold.
+   * An integer from 0 that no shorter form could hold.
    * @param {number} power
-   * @param {number} least that the shortest form with a length byte holds
+   * @param {number} least that the shortest form holds
+   * @param {number} [shortest] power of that form
    */
-  sized(power, least) {
-    const { view } = this.reader;
-    const at = this.reader.skip(1 << power);
-    const value = power === 0 ? view.getUint8(at) : power === 1 ? view.getUint16(at) : view.getUint32(at);
-    // Arrays and maps have no form of one byte.
-    const needed = power === 0 ? least : power === 1 ? (least === 16 ? 16 : 0x100) : 0x10000;
-    this.demand(value >= needed, "length", "the fewest bytes", "more");
+  #sized(power, least, shortest = 0) {
+    const value = this.#integer(power);
+    this.#inFewest(value >= (power > shortest ? 2 ** (4 << power) : least));
     return value;
-  }
-
-  unsigned64() {
-    const value = this.reader.view.getBigUint64(this.reader.skip(8));
-    this.demand(value > 0xffffffffn, "integer", "the fewest bytes", "more");
-    return Number(value);
   }
 
   /** @param {number} power */
-  negative(power) {
-    const { view } = this.reader;
-    const at = this.reader.skip(1 << power);
-    const value = [
-      () => view.getInt8(at),
-      () => view.getInt16(at),
-      () => view.getInt32(at),
-      () => Number(view.getBigInt64(at)),
-    ][power]();
-    const most = [-33, -129, -32769, -2147483649][power];
-    this.demand(value <= most, "integer", "the fewest bytes", "more");
+  #negative(power) {
+    const value = this.#integer(power, true);
+    this.#inFewest(-value > (power ? 2 ** ((4 << power) - 1) : 32));
     return value;
   }
 
+  /** @param {boolean} holds */
+  #inFewest(holds) {
+    this.demand(holds, "integer", "the fewest bytes");
+  }
+
   /** @param {number} value @param {boolean} single */
-  float(value, single) {
+  #real(value, single) {
     this.demand(Number.isFinite(value), "float", "finite", value);
     this.demand(single || Math.fround(value) !== value, "float", "float32", "float64");
     return new Float(value);
   }
 
   /** @param {number} length */
-  text(length) {
-    this.demand(length <= MAX_TEXT, "text", `at most ${MAX_TEXT} bytes`, length);
+  #text(length) {
+    this.limit("bytes of text", length, MAX_TEXT);
     try {
-      return UTF8.decode(this.reader.bytes(length));
+      return UTF8.decode(this.bytes(length));
     } catch (why) {
-      if (why instanceof TypeError) throw this.reader.error("text", "UTF-8", "other bytes");
+      this.demand(!(why instanceof TypeError), "text", "UTF-8");
       throw why;
     }
   }
 
   /** @param {number} length @param {number} depth */
-  array(length, depth) {
-    this.demand(length <= MAX_ITEMS, "array", `at most ${MAX_ITEMS} members`, length);
+  #array(length, depth) {
+    this.limit("members of an array", length, MAX_ITEMS);
     const values = [];
     for (let i = 0; i < length; i++) values.push(this.value(depth + 1));
     return values;
   }
 
   /** @param {number} length @param {number} depth */
-  map(length, depth) {
-    this.demand(length <= MAX_ITEMS, "map", `at most ${MAX_ITEMS} pairs`, length);
+  #map(length, depth) {
+    this.limit("pairs of a map", length, MAX_ITEMS);
     const map = new Map();
     let before = new Uint8Array(0);
     for (let i = 0; i < length; i++) {
-      const start = this.reader.at;
+      const start = this.at;
       const key = this.value(depth + 1);
       this.demand(typeof key === "number" || typeof key === "string", "map key", "an integer or text", key);
-      const bytes = this.reader.data.subarray(start, this.reader.at);
+      const bytes = this.data.subarray(start, this.at);
       this.demand(i === 0 || precedes(before, bytes), "map key", "sorted keys, each once", key);
       map.set(key, this.value(depth + 1));
       before = bytes;

@@ -1,4 +1,3 @@
-import { bitOf } from "./bytes.js";
 import {
   ALPHA_MODES,
   ENDINGS,
@@ -91,9 +90,9 @@ function readField(record, materials) {
 function checkRelations(record, { specs, charts, chartHasUv, openings }) {
   record.demand(specs.has("sdf"), "networks.sdf", "present", "absent");
   record.demand(specs.has("chart") === charts > 1, "chart network", "one exactly for two charts or more", charts);
-  record.demand(specs.has("uv") === chartHasUv.includes(true), "uv network", "one exactly for charts with UV", "another");
+  record.demand(specs.has("uv") === chartHasUv.includes(true), "uv network", "one exactly for charts with UV");
   const closed = charts > 1 && !chartHasUv[charts - 1];
-  record.demand(!openings || closed, "openings", "a last chart of several, without UV", "another");
+  record.demand(!openings || closed, "openings", "a last chart of several, without UV");
 }
 
 /** @param {Record} record @param {number} charts @returns {Map<string, Spec>} */
@@ -110,28 +109,21 @@ function readNetworks(record, charts) {
 
 /** @param {Record} record @param {number} charts @param {number} materials */
 function readChartMaterials(record, charts, materials) {
-  const found = new Int32Array(charts);
-  const bytes = record.bytes(4, "chart_materials");
-  if (!bytes) return found;
-  const wide = materials > 256 ? 2 : 1;
-  record.demand(bytes.length === wide * charts, "chart_materials", `${wide * charts} bytes`, bytes.length);
-  for (let i = 0; i < charts; i++) {
-    found[i] = wide === 1 ? bytes[i] : bytes[2 * i] + 256 * bytes[2 * i + 1];
-    record.demand(found[i] < materials, "chart_materials", `below ${materials}`, found[i]);
-  }
+  const reader = record.bytes(4, "chart_materials");
+  if (!reader) return new Int32Array(charts);
+  const found = Int32Array.from({ length: charts }, () => reader.uint(materials > 256 ? 2 : 1));
+  reader.finish();
+  for (const material of found) record.limit("chart_materials", material, materials - 1);
   record.demand(found.some(Boolean), "chart_materials", "absent, being all 0", "present");
   return found;
 }
 
 /** @param {Record} record @param {number} charts @returns {boolean[]} */
 function readChartHasUv(record, charts) {
-  const bytes = record.bytes(5, "chart_has_uv");
-  if (!bytes) return new Array(charts).fill(true);
-  const length = Math.ceil(charts / 8);
-  record.demand(bytes.length === length, "chart_has_uv", `${length} bytes`, bytes.length);
-  const bits = Array.from({ length: 8 * length }, (_, bit) => Boolean(bitOf(bytes, bit)));
-  record.demand(!bits.slice(charts).includes(true), "chart_has_uv", "zeros after the last chart", "a set bit");
-  const flags = bits.slice(0, charts);
+  const reader = record.bytes(5, "chart_has_uv");
+  if (!reader) return new Array(charts).fill(true);
+  const flags = Array.from(reader.bits(charts, 1), Boolean);
+  reader.finish();
   record.demand(flags.includes(false), "chart_has_uv", "absent, being all set", "present");
   return flags;
 }
@@ -169,7 +161,7 @@ function readMaps(record, textures) {
   SLOTS.forEach((slot, i) => {
     const value = record.take(i + 1, slot, true);
     if (value === undefined) return;
-    const use = new Record(`${record.name}.${slot}`, value);
+    const use = new Record(record.path + slot, value);
     maps[slot] = {
       texture: use.integer(1, "texture", 0, MAX_ITEMS, 0),
       wrapU: use.choice(2, "wrap_u", WRAPS, "repeat"),
@@ -178,7 +170,7 @@ function readMaps(record, textures) {
       strength: use.float(5, "strength", 1),
     };
     use.finish();
-    use.demand(maps[slot].texture < textures, "texture", `below ${textures}`, maps[slot].texture);
+    use.limit("texture", maps[slot].texture, textures - 1);
   });
   record.finish();
   return maps;
@@ -214,30 +206,29 @@ function readInfo(record) {
   /** @type {Object<string, string|number|boolean>} */
   const info = {};
   for (const [key, value] of record.fields) {
-    const name = typeof key === "number" ? MEASURES[key - 1] : key;
-    const known = typeof key === "number" ? name !== undefined : isText(key) && !MEASURES.includes(key);
-    record.demand(known, `key ${key}`, "a known number or another name", key);
+    const name = nameOf(record, `key ${key}`, key, MEASURES);
     info[name] = readMeasure(record, key, name, value);
   }
   return info;
 }
 
-/** @param {Record} record @param {number|string} key @param {string} name @param {unknown} value */
-function readMeasure(record, key, name, value) {
-  if (key === 1) {
-    const preset = typeof value === "number" ? PRESETS[value - 1] : value;
-    const known = isText(preset) && (typeof value === "number" || !PRESETS.includes(/** @type {string} */ (preset)));
-    record.demand(known, name, "a known number or another name", value);
-    return /** @type {string} */ (preset);
-  }
-  const number = value instanceof Float ? value.value : value;
-  if (typeof key === "string") record.demand(isText(number) || isPlain(number), name, "text, a number or a bool", typeof value);
-  else record.demand(typeof value === "number" || (key > 2 && value instanceof Float), name, key > 2 ? "a number" : "an integer", typeof value);
-  const counted = typeof key === "number" && key > 2 && typeof value === "number";
-  return counted ? value / 1e6 : /** @type {string|number|boolean} */ (number);
+/** What a number names, or text that names what has no number. @param {Record} record @param {string} field @param {unknown} value @param {string[]} names */
+function nameOf(record, field, value, names) {
+  const name = typeof value === "number" ? names[value - 1] : value;
+  const known = isText(name) && (name !== value || !names.includes(name));
+  record.demand(known, field, "a known number or another name", value);
+  return /** @type {string} */ (name);
 }
 
-/** @param {unknown} value */
-function isPlain(value) {
-  return typeof value === "number" || typeof value === "boolean";
+/** @param {Record} record @param {number|string} key @param {string} name @param {unknown} value */
+function readMeasure(record, key, name, value) {
+  if (key === 1) return nameOf(record, name, value, PRESETS);
+  const found = /** @type {string|number|boolean} */ (value instanceof Float ? value.value : value);
+  if (typeof key === "string") {
+    record.demand(isText(found) || typeof found === "number" || typeof found === "boolean", name, "text, a number or a bool", typeof value);
+    return found;
+  }
+  const fraction = key > 2;
+  record.demand(typeof (fraction ? found : value) === "number", name, fraction ? "a number" : "an integer", typeof value);
+  return fraction && found === value ? Number(value) / 1e6 : found;
 }

@@ -1,27 +1,18 @@
-import { NISPError } from "./errors.js";
+import { ByteReader } from "./bytes.js";
+import { Place } from "./errors.js";
 import { Float } from "./messagepack.js";
 
 /** A map of META whose fields are taken out one by one; a field left over is unknown. */
-export class Record {
+export class Record extends Place {
   /**
    * @param {string} name that errors begin with
    * @param {unknown} value which must be a map
    */
   constructor(name, value) {
-    this.name = name;
-    if (!(value instanceof Map)) throw this.error("map", "a map", typeof value);
+    super("META", `${name}.`);
+    this.demand(value instanceof Map, "map", "a map", typeof value);
     /** @type {Map<number|string, unknown>} */
-    this.fields = new Map(value);
-  }
-
-  /** @param {string} field @param {unknown} expected @param {unknown} found @returns {NISPError} */
-  error(field, expected, found) {
-    return new NISPError("META", `${this.name}.${field}`, expected, found);
-  }
-
-  /** @param {unknown} holds @param {string} field @param {unknown} expected @param {unknown} found */
-  demand(holds, field, expected, found) {
-    if (!holds) throw this.error(field, expected, found);
+    this.fields = new Map(/** @type {Map<number|string, unknown>} */ (value));
   }
 
   /**
@@ -45,7 +36,7 @@ export class Record {
    * @param {(value: any) => T} convert throws what is no value of the type
    * @returns {T}
    */
-  typed(key, field, fallback, convert) {
+  #typed(key, field, fallback, convert) {
     const raw = this.take(key, field, fallback !== undefined);
     if (raw === undefined) return /** @type {T} */ (fallback);
     const value = convert(raw);
@@ -56,16 +47,16 @@ export class Record {
 
   /** @param {number} key @param {string} field @param {number} least @param {number} most @param {number} [fallback] */
   integer(key, field, least, most, fallback) {
-    return this.typed(key, field, fallback, (value) => {
+    return this.#typed(key, field, fallback, (value) => {
       this.demand(typeof value === "number", field, "an integer", typeof value);
-      this.demand(value >= least && value <= most, field, `${least} to ${most}`, value);
+      this.limit(field, value, most, least);
       return /** @type {number} */ (value);
     });
   }
 
   /** @param {number} key @param {string} field @param {number} [fallback] */
   float(key, field, fallback) {
-    return this.typed(key, field, fallback, (value) => {
+    return this.#typed(key, field, fallback, (value) => {
       this.demand(value instanceof Float, field, "a float", typeof value);
       return /** @type {number} */ (value.value);
     });
@@ -73,16 +64,16 @@ export class Record {
 
   /** @param {number} key @param {string} field @param {number} count @param {number[]} [fallback] */
   floats(key, field, count, fallback) {
-    return this.typed(key, field, fallback, (value) => {
+    return this.#typed(key, field, fallback, (value) => {
       const right = Array.isArray(value) && value.length === count && value.every((each) => each instanceof Float);
-      this.demand(right, field, `${count} floats`, "others");
+      this.demand(right, field, `${count} floats`);
       return /** @type {number[]} */ (value.map((/** @type {Float} */ each) => each.value));
     });
   }
 
   /** @param {number} key @param {string} field @param {boolean} fallback */
   bool(key, field, fallback) {
-    return this.typed(key, field, fallback, (value) => {
+    return this.#typed(key, field, fallback, (value) => {
       this.demand(typeof value === "boolean", field, "a bool", typeof value);
       return /** @type {boolean} */ (value);
     });
@@ -90,9 +81,8 @@ export class Record {
 
   /** @param {number} key @param {string} field @param {string} [fallback] */
   text(key, field, fallback) {
-    return this.typed(key, field, fallback, (value) => {
-      this.demand(typeof value === "string", field, "text", typeof value);
-      this.demand(isText(value), field, "no control characters", "some");
+    return this.#typed(key, field, fallback, (value) => {
+      this.demand(isText(value), field, "text without control characters");
       return /** @type {string} */ (value);
     });
   }
@@ -106,17 +96,18 @@ export class Record {
    * @param {T} [fallback]
    */
   choice(key, field, names, fallback) {
-    return this.typed(key, field, fallback, (value) => {
+    return this.#typed(key, field, fallback, (value) => {
       this.demand(typeof value === "number" && names[value - 1], field, `1 to ${names.length}`, value);
       return names[value - 1];
     });
   }
 
-  /** Bytes, undefined where absent. @param {number} key @param {string} field @returns {Uint8Array|undefined} */
+  /** A reader of bytes, undefined where absent. @param {number} key @param {string} field */
   bytes(key, field) {
     const value = this.take(key, field, true);
-    this.demand(value === undefined || value instanceof Uint8Array, field, "bytes", typeof value);
-    return /** @type {Uint8Array|undefined} */ (value);
+    if (value === undefined) return value;
+    this.demand(value instanceof Uint8Array, field, "bytes", typeof value);
+    return new ByteReader(/** @type {Uint8Array} */ (value), this.section, `${this.path}${field}.`);
   }
 
   /**
@@ -125,25 +116,24 @@ export class Record {
    */
   array(key, field, optional) {
     const value = this.take(key, field, optional);
-    this.demand(value === undefined || (Array.isArray(value) && value.length), field, "a list, not empty", "another");
+    this.demand(value === undefined || (Array.isArray(value) && value.length), field, "a list, not empty");
     return /** @type {unknown[]|undefined} */ (value);
   }
 
   /** A map, not empty where it is there. @param {number} key @param {string} field @param {boolean} optional */
   map(key, field, optional) {
     const value = this.take(key, field, optional);
-    if (value === undefined) return new Record(`${this.name}.${field}`, new Map());
-    const record = new Record(`${this.name}.${field}`, value);
-    this.demand(record.fields.size, field, "a map, not empty", "an empty one");
+    const record = new Record(this.path + field, value ?? new Map());
+    this.demand(!value || record.fields.size, field, "a map, not empty");
     return record;
   }
 
   finish() {
-    for (const key of this.fields.keys()) throw this.error("field", "a known field", key);
+    for (const key of this.fields.keys()) this.demand(false, "field", "a known one", key);
   }
 }
 
-/** Whether it is text without control characters. @param {unknown} value */
+/** Whether it is text without control characters. @param {unknown} value @returns {value is string} */
 export function isText(value) {
   return typeof value === "string" && !/[\0-\x1f\x7f]/.test(value);
 }

@@ -1,4 +1,4 @@
-import { halfToNumber } from "./bytes.js";
+import { toFloat } from "./bytes.js";
 import { MAX_CELLS, MAX_SYMBOL } from "./enumerations.js";
 import { readNumberKind } from "./matrices.js";
 
@@ -26,17 +26,17 @@ export function readRunHeader(reader, count, symbols) {
   const kind = symbols ? null : readNumberKind(reader, ["float32", "float16"]);
   const top = symbols ? MAX_SYMBOL : reader.varint();
   const most = symbols ? MAX_SYMBOL : kind === "float32" ? 0x7f7fffff : 0x7bff;
-  if (top > most) throw reader.error("top", `at most ${most}`, top);
+  reader.limit("top", top, most);
   const limit = reader.varint();
-  if (limit > top) throw reader.error("limit", `at most ${top}`, limit);
+  reader.limit("limit", limit, top);
   return { count, kind, top, limit, model: limit > 0 ? readModel(reader) : null };
 }
 
 /** @param {Bytes} reader @returns {FrequencyModel} */
 function readModel(reader) {
-  const byte = reader.uint8();
-  const zeros = byte & 128 ? reader.uint8() : 0;
-  if (byte & 128 && zeros === 0) throw reader.error("zeros", "above 0", 0);
+  const byte = reader.uint(1);
+  const zeros = byte & 128 ? reader.uint(1) : 0;
+  reader.demand(byte < 128 || zeros, "zeros", "above 0", 0);
   return { narrowness: byte & 31, tail: (byte >> 5) & 3, zeros };
 }
 
@@ -54,7 +54,8 @@ export function readStream(reader, headers) {
   const tokens = readTokens(reader, runs);
   return headers.map((header, i) => {
     const integers = header.model ? readIntegers(reader, tokens[i], header.limit) : new Float64Array(header.count);
-    const values = header.kind === null ? integers : integers.map((n) => toFloat(header, n));
+    const { kind, top } = header;
+    const values = kind ? integers.map((n) => n && Math.sign(n) * toFloat(kind, top + 1 - Math.abs(n))) : integers;
     return { values, bits: bitsOf(tokens[i], runs[i], header.limit) };
   });
 }
@@ -98,8 +99,8 @@ function frequencies(cells, { narrowness, tail, zeros }) {
 function readTokens(reader, runs) {
   const total = runs.reduce((sum, run) => sum + run.count, 0);
   const lanes = total === 0 ? 0 : total < SCALE ? 1 : total >> 9;
-  const states = Float64Array.from({ length: lanes }, () => reader.uint16() * 65536 + reader.uint16());
-  if (states.some((state) => state < 65536)) throw reader.error("first_state", "2^16 or more", "less");
+  const states = Float64Array.from({ length: lanes }, () => reader.uint(2) * 65536 + reader.uint(2));
+  reader.demand(states.every((state) => state >= 65536), "first_state", "2^16 or more");
   let lane = 0;
   const found = runs.map(({ count, cells, table }) => {
     const { slots, starts } = slotTable(table);
@@ -110,12 +111,12 @@ function readTokens(reader, runs) {
       const token = slots[slot];
       tokens[i] = token - cells;
       const next = table[token] * Math.floor(state / SCALE) + slot - starts[token];
-      states[lane] = next < 65536 ? next * 65536 + reader.uint16() : next;
+      states[lane] = next < 65536 ? next * 65536 + reader.uint(2) : next;
       if (++lane === lanes) lane = 0;
     }
     return tokens;
   });
-  if (!states.every((state) => state === 65536)) throw reader.error("stream", "states of 2^16 at its end", "others");
+  reader.demand(states.every((state) => state === 65536), "stream", "states of 2^16 at its end");
   return found;
 }
 
@@ -141,25 +142,14 @@ function slotTable(table) {
 /** @param {Bytes} reader @param {Int32Array} tokens @param {number} limit */
 function readIntegers(reader, tokens, limit) {
   const { open } = cellsOf(limit);
-  const rest = reader.bits(new Uint8Array(tokens.reduce((count, token) => count + (token ? 1 : 0), 0)).fill(open));
+  const rest = reader.bits(tokens.reduce((count, token) => count + (token ? 1 : 0), 0), open);
   const integers = new Float64Array(tokens.length);
   let next = 0;
   tokens.forEach((token, i) => {
     if (token === 0) return;
     const size = (Math.abs(token) - 1) * 2 ** open + rest[next++] + 1;
-    if (size > limit) throw reader.error("magnitude", `at most ${limit}`, size);
+    reader.limit("magnitude", size, limit);
     integers[i] = token < 0 ? -size : size;
   });
   return integers;
-}
-
-const SINGLE = new DataView(new ArrayBuffer(4));
-
-/** @param {RunHeader} header @param {number} n */
-function toFloat({ kind, top }, n) {
-  if (n === 0) return 0;
-  const pattern = top + 1 - Math.abs(n);
-  if (kind === "float16") return halfToNumber(pattern) * Math.sign(n);
-  SINGLE.setUint32(0, pattern);
-  return SINGLE.getFloat32(0) * Math.sign(n);
 }

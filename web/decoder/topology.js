@@ -65,10 +65,10 @@ export function readSpec(record, name, outputs, charts) {
 /** @param {import("./record.js").Record} record @returns {number[]} */
 function readHidden(record) {
   const widths = record.array(1, "hidden", false) ?? [];
-  record.demand(widths.length <= MAX_HIDDEN_LAYERS, "hidden", `at most ${MAX_HIDDEN_LAYERS} layers`, widths.length);
+  record.limit("hidden layers", widths.length, MAX_HIDDEN_LAYERS);
   return widths.map((width) => {
-    const fits = typeof width === "number" && width >= 1 && width <= MAX_WIDTH;
-    record.demand(fits, "hidden", `widths of 1 to ${MAX_WIDTH}`, width);
+    record.demand(typeof width === "number", "hidden", "integers", typeof width);
+    record.limit("hidden", /** @type {number} */ (width), MAX_WIDTH, 1);
     return /** @type {number} */ (width);
   });
 }

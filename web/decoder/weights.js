@@ -1,6 +1,5 @@
-import { ByteReader, halfToNumber } from "./bytes.js";
+import { ByteReader } from "./bytes.js";
 import { CODINGS, MAX_SYMBOL, MAX_WEIGHTS, STEPS } from "./enumerations.js";
-import { NISPError } from "./errors.js";
 import { initialWeights } from "./initial_weights.js";
 import { readMatrix } from "./matrices.js";
 import { readRunHeader, readStream } from "./stream.js";
@@ -14,9 +13,9 @@ import { shapesOf } from "./topology.js";
  * @property {number} count of values
  * @property {number} bits that they take in the stream
  * @property {number|null} step
- * @property {Float64Array|null} values; null where they are in the stream
- * @property {import("./stream.js").RunHeader|null} header
- * @property {Float64Array|null} predicted
+ * @property {Float64Array} values none yet where they are in the stream
+ * @property {import("./stream.js").RunHeader} [header] where they are in the stream
+ * @property {Float64Array} [predicted]
  * @property {Uint8Array|null} shifts of each value's row
  * @typedef {Map<string, {shape: Shape, values: Float32Array}>} Tensors
  */
@@ -31,8 +30,8 @@ import { shapesOf } from "./topology.js";
 export function readWeights(data, specs) {
   const shapes = new Map([...specs].map(([name, spec]) => [name, shapesOf(spec)]));
   const total = [...shapes.values()].flat().reduce((sum, { rows, columns }) => sum + rows * columns, 0);
-  if (total > MAX_WEIGHTS) throw new NISPError("NETS", "weights", `at most ${MAX_WEIGHTS}`, total);
   const reader = new ByteReader(data, "NETS");
+  reader.limit("weights", total, MAX_WEIGHTS);
   /** @type {Map<string, number>} */
   const lengths = new Map();
   const records = [...specs].map(([name, spec]) => {
@@ -43,7 +42,7 @@ export function readWeights(data, specs) {
   });
   const start = reader.at;
   fillFromStream(reader, records.flat());
-  reader.end();
+  reader.finish();
   const bits = records.map((found) => found.reduce((sum, record) => sum + record.bits, 0));
   const all = bits.reduce((sum, each) => sum + each, 0) || 1;
   let [before, end] = [0, 0];
@@ -92,9 +91,9 @@ function readRecord(reader, left, before, seed, place) {
   const step = form === null ? null : readStep(reader, form, before);
   const shifts = form?.startsWith("rows") ? readRowShifts(reader, Number(form[4]), held) : null;
   const count = held.reduce((sum, { rows, columns }) => sum + rows * columns, 0);
-  const record = { held, count, bits: 0, step, values: null, header: null, predicted: null, shifts };
+  const record = { held, count, bits: 0, step, values: new Float64Array(0), shifts };
   if (coding === "delta_init") {
-    if (step === null) throw reader.error("step", "a step with delta_init", "none");
+    reader.demand(step !== null, "step", "one with delta_init", "none");
     return { ...record, ...readDeltas(reader, record, seed, place) };
   }
   if (coding === "entropy") return { ...record, header: readRunHeader(reader, count, step !== null) };
@@ -103,38 +102,37 @@ function readRecord(reader, left, before, seed, place) {
 
 /** @param {ByteReader} reader @param {number} left */
 function readTag(reader, left) {
-  const tag = reader.uint8();
+  const tag = reader.uint(1);
   // A tag of 0 is a wide one: what does not fit in the bits of one.
   const [number, form, joined] = tag ? [tag & 7, (tag >> 3) & 7, tag >> 6] : reader.bytes(3);
   const coding = CODINGS[number - 1];
   const fitting = number <= 7 && form <= 7 && joined <= 3;
-  if (!coding || form > STEPS.length || (!tag && fitting)) throw reader.error("coding", "a known coding and step, in the fewest bytes", number);
+  reader.demand(coding && form <= STEPS.length && (tag || !fitting), "coding", "a known coding and step, in the fewest bytes", number);
   const joinable = coding === "entropy" || coding === "delta_init";
   const fits = joined < left && (joinable || joined === 0);
-  if (!fits) throw reader.error("joined", "tensors that follow, in a coding that joins", joined);
+  reader.demand(fits, "joined", "tensors that follow, in a coding that joins", joined);
   return { coding, form: form ? STEPS[form - 1] : null, joined };
 }
 
 /** @param {ByteReader} reader @param {string} form @param {number|null} before */
 function readStep(reader, form, before) {
   const step = readRawStep(reader, form, before);
-  if (step === null || !(step > 0 && step < Infinity)) throw reader.error("step", "finite and above 0", step);
-  return step;
+  reader.demand(step !== null && step > 0 && step < Infinity, "step", "finite and above 0", step);
+  return /** @type {number} */ (step);
 }
 
 /** @param {ByteReader} reader @param {string} form @param {number|null} before */
 function readRawStep(reader, form, before) {
   if (form === "same") return before;
-  if (form === "float16") return halfToNumber(reader.uint16());
-  if (form === "float32") return reader.view.getFloat32(reader.skip(4), true);
-  const byte = reader.uint8();
+  if (form.startsWith("float")) return reader.float(form);
+  const byte = reader.uint(1);
   return (8 + (byte % 8)) * 2 ** ((byte >> 3) - 30);
 }
 
 /** The row shift of every value. @param {ByteReader} reader @param {number} bits @param {Shape[]} held */
 function readRowShifts(reader, bits, held) {
   const rows = held.flatMap(({ rows, columns }) => new Array(rows).fill(columns));
-  const shifts = reader.bits(rows.map(() => bits));
+  const shifts = reader.bits(rows.length, bits);
   const found = new Uint8Array(rows.reduce((sum, columns) => sum + columns, 0));
   let at = 0;
   rows.forEach((columns, row) => {
@@ -151,9 +149,9 @@ function readDeltas(reader, { held, count, shifts }, seed, place) {
   let at = 0;
   for (const { rows, columns } of held) {
     const scale = reader.varint();
-    if (scale > MAX_SYMBOL) throw reader.error("initial scale", `at most ${MAX_SYMBOL}`, scale);
+    reader.limit("initial scale", scale, MAX_SYMBOL);
     for (const end = at + rows * columns; at < end; at++) {
-      const shift = shifts ? shifts[at] : 0;
+      const shift = shifts?.[at] ?? 0;
       predicted[at] = Math.floor((scale * initial[at] + 2 ** (22 + shift)) / 2 ** (23 + shift));
     }
   }
@@ -181,14 +179,14 @@ function toWeights(reader, { values, step, predicted, shifts, count }) {
   const weights = new Float32Array(count);
   const rounded = step === null ? 1 : Math.fround(step);
   for (let i = 0; i < count; i++) {
-    let value = values ? values[i] : 0;
+    let value = values[i];
     if (step !== null) {
-      value = (value + (predicted ? predicted[i] : 0)) * 2 ** (shifts ? shifts[i] : 0);
-      if (Math.abs(value) > MAX_SYMBOL) throw reader.error("symbol", `at most ${MAX_SYMBOL}`, value);
+      value = (value + (predicted?.[i] ?? 0)) * 2 ** (shifts?.[i] ?? 0);
+      reader.limit("symbol", value, MAX_SYMBOL, -MAX_SYMBOL);
     }
     // Adding 0 turns a negative zero into 0.
     weights[i] = Math.fround(value) * rounded + 0;
-    if (!Number.isFinite(weights[i])) throw reader.error("weight", "finite", weights[i]);
+    reader.demand(Number.isFinite(weights[i]), "weight", "finite", weights[i]);
   }
   return weights;
 }

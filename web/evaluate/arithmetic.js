@@ -27,11 +27,11 @@ export class Arithmetic {
   reserve(count) {
     const start = this.end;
     this.end += 4 * Math.ceil(count / 4) * 4;
-    if (this.end > this.all.byteLength) this.grow();
+    if (this.end > this.all.byteLength) this.#grow();
     return start;
   }
 
-  grow() {
+  #grow() {
     if (this.memory) {
       const missing = this.end - this.memory.buffer.byteLength;
       if (missing > 0) this.memory.grow(Math.ceil(missing / PAGE));

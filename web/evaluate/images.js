@@ -1,7 +1,13 @@
 /**
  * Images as the specification wants their texels: embedded color profiles, gamma and orientation
- * are ignored. Browsers can be told to ignore profiles, but not orientation: it is taken out.
+ * are ignored. Browsers can be told to ignore profiles, but not orientation: it is renamed.
  */
+import { crc32 } from "../decoder/bytes.js";
+
+/** "noNe", the name of a chunk that readers of PNG, JPEG and WebP pass over. */
+const NO_CHUNK = [0x6e, 0x6f, 0x4e, 0x65];
+/** "irot", by nothing. */
+const NO_TURN = [0x69, 0x72, 0x6f, 0x74, 0];
 
 /**
  * @param {import("../decoder/document.js").Texture} texture
@@ -35,37 +41,17 @@ export function readPixels(image) {
 }
 
 /**
- * The image file without what turns it: EXIF in PNG, JPEG and WebP; `irot`, `imir` and `clap` of AVIF.
- * A file of another structure is returned as it is: the image decoder says what is wrong with it.
+ * The image file, where what turns it goes by another name: EXIF in PNG, JPEG and WebP; `irot`, `imir`
+ * and `clap` of AVIF. What does not look like such a file stays: the image decoder says what is wrong.
  * @param {string} mime
  * @param {Uint8Array} data
  * @returns {Uint8Array}
  */
 export function withoutOrientation(mime, data) {
-  if (mime === "image/png") return withoutParts(data, 8, pngPart, "eXIf");
-  if (mime === "image/jpeg") return withoutParts(data, 2, jpegPart, "Exif");
-  if (mime === "image/webp") return renamedExif(data);
-  return withoutRotation(data);
-}
-
-/** @typedef {{end: number, name: string}|null} Part null where parts end */
-
-/** @param {Uint8Array} data @param {number} start @param {(data: Uint8Array, at: number) => Part} partAt @param {string} unwanted */
-function withoutParts(data, start, partAt, unwanted) {
-  const kept = [data.subarray(0, start)];
-  let at = start;
-  for (let part = partAt(data, at); part && part.end <= data.length; part = partAt(data, at)) {
-    if (part.name !== unwanted) kept.push(data.subarray(at, part.end));
-    at = part.end;
-  }
-  kept.push(data.subarray(at));
-  const whole = new Uint8Array(kept.reduce((sum, part) => sum + part.length, 0));
-  let place = 0;
-  for (const part of kept) {
-    whole.set(part, place);
-    place += part.length;
-  }
-  return whole;
+  const copy = new Uint8Array(data);
+  const rename = { "image/png": renameInPNG, "image/jpeg": renameInJPEG, "image/webp": renameInWebP }[mime] ?? renameInAVIF;
+  rename(copy, new DataView(copy.buffer));
+  return copy;
 }
 
 /** @param {Uint8Array} data @param {number} at */
@@ -73,44 +59,43 @@ function textAt(data, at) {
   return String.fromCharCode(...data.subarray(at, at + 4));
 }
 
-/** A chunk. @param {Uint8Array} data @param {number} at @returns {Part} */
-function pngPart(data, at) {
-  if (at + 12 > data.length) return null;
-  const length = data[at] * 2 ** 24 + ((data[at + 1] << 16) | (data[at + 2] << 8) | data[at + 3]);
-  return { end: at + 12 + length, name: textAt(data, at + 4) };
-}
-
-/** A segment before the image's own data. @param {Uint8Array} data @param {number} at @returns {Part} */
-function jpegPart(data, at) {
-  const marker = data[at + 1];
-  if (at + 8 > data.length || data[at] !== 0xff || marker === 0xda || marker < 0xc0) return null;
-  const name = marker === 0xe1 ? textAt(data, at + 4) : "";
-  return { end: at + 2 + ((data[at + 2] << 8) | data[at + 3]), name };
-}
-
-/** Under another name the chunk says nothing. @param {Uint8Array} data */
-function renamedExif(data) {
-  const view = new DataView(data.buffer, data.byteOffset, data.byteLength);
-  for (let at = 12; at + 8 <= data.length; ) {
-    const length = view.getUint32(at + 4, true);
-    if (textAt(data, at) === "EXIF") {
-      const copy = data.slice();
-      copy.set([0x6e, 0x6f, 0x6e, 0x65], at);
-      if (textAt(copy, 12) === "VP8X") copy[20] &= ~8;
-      return copy;
+/** Chunks have a checksum over name and content. @param {Uint8Array} data @param {DataView} view */
+function renameInPNG(data, view) {
+  for (let at = 8; at + 12 <= data.length; ) {
+    const end = at + 12 + view.getUint32(at);
+    if (textAt(data, at + 4) === "eXIf" && end <= data.length) {
+      data.set(NO_CHUNK, at + 4);
+      view.setUint32(end - 4, crc32(data.subarray(at + 4, end - 4)));
     }
+    at = end;
+  }
+}
+
+/** Segments before the image's own data. @param {Uint8Array} data @param {DataView} view */
+function renameInJPEG(data, view) {
+  for (let at = 2; at + 8 <= data.length && data[at] === 0xff; at += 2 + view.getUint16(at + 2)) {
+    const marker = data[at + 1];
+    if (marker === 0xda || marker < 0xc0) return;
+    if (marker === 0xe1 && textAt(data, at + 4) === "Exif") data.set(NO_CHUNK, at + 4);
+  }
+}
+
+/** Chunks of even length; the first may say that there is EXIF. @param {Uint8Array} data @param {DataView} view */
+function renameInWebP(data, view) {
+  for (let at = 12; at + 8 <= data.length; ) {
+    if (textAt(data, at) === "EXIF") {
+      data.set(NO_CHUNK, at);
+      if (textAt(data, 12) === "VP8X") data[20] &= ~8;
+    }
+    const length = view.getUint32(at + 4, true);
     at += 8 + length + (length & 1);
   }
-  return data;
 }
 
-/** Boxes that turn, mirror or crop become turns by nothing: to leave them out would move others. @param {Uint8Array} data */
-function withoutRotation(data) {
-  const copy = data.slice();
+/** Boxes that turn, mirror or crop become turns by nothing: to leave them out would move others. @param {Uint8Array} data @param {DataView} view */
+function renameInAVIF(data, view) {
   for (let at = 4; at + 5 <= data.length; at++) {
-    const size = data[at - 1];
-    const there = { irot: 9, imir: 9, clap: 40 }[textAt(data, at)] === size && !(data[at - 2] | data[at - 3] | data[at - 4]);
-    if (there) copy.set([0x69, 0x72, 0x6f, 0x74, 0], at);
+    const size = { irot: 9, imir: 9, clap: 40 }[textAt(data, at)];
+    if (size === view.getUint32(at - 4)) data.set(NO_TURN, at);
   }
-  return copy;
 }

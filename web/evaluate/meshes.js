@@ -42,7 +42,7 @@ export class MeshQueries {
     const found = new Float32Array(2 * charts.length);
     charts.forEach((chart, i) => {
       const [x, y, z] = points.subarray(3 * i, 3 * i + 3);
-      const face = this.faceOn(chart, x, y, z);
+      const face = this.#faceOn(chart, x, y, z);
       closestTo(corners, 9 * face, x, y, z);
       const [a, b, c] = CLOSEST.weights;
       for (let axis = 0; axis < 2; axis++) {
@@ -54,7 +54,7 @@ export class MeshQueries {
   }
 
   /** The closest face of a chart. @param {number} chart @param {number} x @param {number} y @param {number} z */
-  faceOn(chart, x, y, z) {
+  #faceOn(chart, x, y, z) {
     const { charts, corners, sheet } = this.triangles;
     this.search.closest(x, y, z);
     if (charts[this.search.face] === chart) return this.search.face;

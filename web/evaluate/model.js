@@ -90,12 +90,12 @@ export class NISPModel {
     const charts = this.charts(points, false);
     const uvs = this.uv(points, charts);
     const colors = new Float32Array(4 * charts.length);
-    charts.forEach((chart, i) => colors.set(this.colorAt(chart, uvs[2 * i], uvs[2 * i + 1], images), 4 * i));
+    charts.forEach((chart, i) => colors.set(this.#colorAt(chart, uvs[2 * i], uvs[2 * i + 1], images), 4 * i));
     return colors;
   }
 
   /** @param {number} chart @param {number} u @param {number} v @param {(import("./texture.js").Pixels|null)[]} images */
-  colorAt(chart, u, v, images) {
+  #colorAt(chart, u, v, images) {
     const { chartMaterials, chartHasUv } = this.document;
     const material = this.metadata.materials[chartMaterials[chart]];
     const use = chartHasUv[chart] ? material.maps.base_color : undefined;

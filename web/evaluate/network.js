@@ -26,7 +26,7 @@ export class NetworkEvaluator {
     this.input = arithmetic.reserve(this.inputs * POINTS);
     this.buffers = [arithmetic.reserve(widest * POINTS), arithmetic.reserve(widest * POINTS)];
     this.layers = [...spec.hidden, spec.outputs].map((_, i) =>
-      this.layer(values(`weight.${i}`), values(`bias.${i}`), i < spec.hidden.length),
+      this.#layer(values(`weight.${i}`), values(`bias.${i}`), i < spec.hidden.length),
     );
   }
 
@@ -35,7 +35,7 @@ export class NetworkEvaluator {
    * @param {Float32Array} weight @param {Float32Array} bias @param {boolean} hidden
    * @returns {Layer}
    */
-  layer(weight, bias, hidden) {
+  #layer(weight, bias, hidden) {
     const scale = hidden && this.spec.activation === "sine" ? this.spec.w0 / Math.PI : 1;
     const rows = bias.length;
     const columns = weight.length / rows;
@@ -70,7 +70,7 @@ export class NetworkEvaluator {
       const count = Math.min(POINTS, total - start);
       this.enter(points, charts, start, count);
       const at = this.forward() >> 2;
-      if (this.affine && charts) this.addAffine(points, charts, start, count, at);
+      if (this.affine && charts) this.#addAffine(points, charts, start, count, at);
       this.finish(at);
       use(this.arithmetic.all, at, start, count);
     }
@@ -128,12 +128,12 @@ export class NetworkEvaluator {
         all[at + row * POINTS + p] = absolute ? Math.abs(value) : value;
       }
     });
-    if (!charts) return this.encode();
+    if (!charts) return this.#encode();
     if (spec.conditioning === "scalar") {
       const row = at + (this.coordinates - 1) * POINTS;
       for (let p = 0; p < count; p++) all[row + p] = (2 * charts[start + p] + 1) / spec.charts - 1;
     }
-    this.encode();
+    this.#encode();
     const first = at + (this.inputs - spec.embedding) * POINTS;
     for (let k = 0; k < spec.embedding; k++) {
       for (let p = 0; p < count; p++) {
@@ -144,14 +144,13 @@ export class NetworkEvaluator {
 
   /** Which axis each coordinate is of, and whether its absolute value enters. */
   sources() {
-    const { mirror } = this.spec;
-    const folded = [0, 1, 2].map((axis) => ({ axis, absolute: Boolean((mirror >> axis) & 1) }));
-    const followers = [0, 1, 2].filter((axis) => (mirror >> (3 + axis)) & 1);
-    return [...folded, ...followers.map((axis) => ({ axis, absolute: false }))];
+    const has = (/** @type {number} */ bit) => Boolean((this.spec.mirror >> bit) & 1);
+    const bits = [0, 1, 2, 3, 4, 5].filter((bit) => bit < 3 || has(bit));
+    return bits.map((bit) => ({ axis: bit % 3, absolute: bit < 3 && has(bit) }));
   }
 
   /** The coordinates' waves in their place, from the last coordinate to the first. */
-  encode() {
+  #encode() {
     if (this.spec.encoding !== "fourier") return;
     const { all } = this.arithmetic;
     const at = this.input >> 2;
@@ -178,14 +177,14 @@ export class NetworkEvaluator {
       kernel.linear(weight, bias, x, y, rows, columns, POINTS);
       const hidden = i + 1 < this.layers.length;
       if (hidden && this.spec.activation === "sine") kernel.sine(y, slopes[i] ?? 0, rows * POINTS);
-      else if (hidden) this.rectify(y >> 2, slopes[i] >> 2, rows * POINTS);
+      else if (hidden) this.#rectify(y >> 2, slopes[i] >> 2, rows * POINTS);
       x = y;
     });
     return x;
   }
 
   /** @param {number} y @param {number} d @param {number} count */
-  rectify(y, d, count) {
+  #rectify(y, d, count) {
     const { all } = this.arithmetic;
     for (let i = 0; i < count; i++) {
       const positive = all[y + i] > 0;
@@ -206,7 +205,7 @@ export class NetworkEvaluator {
   }
 
   /** @param {Float32Array} points @param {Int32Array} charts @param {number} start @param {number} count @param {number} at */
-  addAffine(points, charts, start, count, at) {
+  #addAffine(points, charts, start, count, at) {
     const { all } = this.arithmetic;
     const { outputs } = this.spec;
     const sources = this.sources();

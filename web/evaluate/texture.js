@@ -35,14 +35,11 @@ export function lookUp(image, u, v, use) {
   const top = data instanceof Float32Array ? 1 : 255;
   const texel = (/** @type {number} */ x, /** @type {number} */ y) =>
     4 * (wrapped(y, height, use.wrapV) * width + wrapped(x, width, use.wrapU));
-  const x = u * width;
-  const y = (1 - v) * height;
-  if (use.filter === "nearest") {
-    const at = texel(Math.floor(x), Math.floor(y));
-    return [0, 1, 2, 3].map((channel) => data[at + channel] / top);
-  }
-  const [left, above] = [Math.floor(x - 0.5), Math.floor(y - 0.5)];
-  const [right, low] = [x - 0.5 - left, y - 0.5 - above];
+  const nearest = use.filter === "nearest";
+  const toCenter = nearest ? 0 : 0.5;
+  const [x, y] = [u * width - toCenter, (1 - v) * height - toCenter];
+  const [left, above] = [Math.floor(x), Math.floor(y)];
+  const [right, low] = nearest ? [0, 0] : [x - left, y - above];
   const corners = [texel(left, above), texel(left + 1, above), texel(left, above + 1), texel(left + 1, above + 1)];
   const shares = [(1 - right) * (1 - low), right * (1 - low), (1 - right) * low, right * low];
   return [0, 1, 2, 3].map((channel) =>

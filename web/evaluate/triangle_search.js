@@ -26,30 +26,30 @@ export class TriangleSearch {
     this.faces = inSpace(corners, faces);
     this.leaves = 2 ** Math.max(0, Math.ceil(Math.log2(faces.length / SEARCH.leaf)));
     this.boxes = new Float64Array(BOX * 2 * this.leaves);
-    for (let box = 2 * this.leaves - 1; box > 0; box--) this.measure(box);
+    for (let box = 2 * this.leaves - 1; box > 0; box--) this.#measure(box);
     this.stack = new Int32Array(64);
     this.face = 0;
     this.squared = 0;
   }
 
   /** Calls `use` with each face of a leaf. @param {number} box @param {(face: number) => void} use */
-  eachFace(box, use) {
-    const end = this.begin(box + 1);
-    for (let i = this.begin(box); i < end; i++) use(this.faces[i]);
+  #eachFace(box, use) {
+    const end = this.#begin(box + 1);
+    for (let i = this.#begin(box); i < end; i++) use(this.faces[i]);
   }
 
   /** @param {number} box a leaf */
-  begin(box) {
+  #begin(box) {
     return Math.floor(((box - this.leaves) * this.faces.length) / this.leaves);
   }
 
   /** @param {number} box */
-  measure(box) {
+  #measure(box) {
     const { boxes } = this;
     const at = BOX * box;
     boxes.fill(Infinity, at, at + 3).fill(-Infinity, at + 3, at + 6);
-    if (box < this.leaves) for (const half of [2 * box, 2 * box + 1]) this.addHalf(at, BOX * half);
-    else this.eachFace(box, (face) => this.addFace(at, face));
+    if (box < this.leaves) for (const half of [2 * box, 2 * box + 1]) this.#addHalf(at, BOX * half);
+    else this.#eachFace(box, (face) => this.#addFace(at, face));
     let far = 0;
     for (let axis = 0; axis < 3; axis++) {
       const [low, high] = [boxes[at + axis], boxes[at + 3 + axis]];
@@ -62,7 +62,7 @@ export class TriangleSearch {
   }
 
   /** @param {number} at @param {number} half */
-  addHalf(at, half) {
+  #addHalf(at, half) {
     const { boxes } = this;
     const area = boxes[half + AREA];
     for (let axis = 0; axis < 3; axis++) {
@@ -75,7 +75,7 @@ export class TriangleSearch {
   }
 
   /** @param {number} at @param {number} face */
-  addFace(at, face) {
+  #addFace(at, face) {
     const { boxes, corners } = this;
     const normal = areaNormal(corners, 9 * face);
     const area = this.sheet[face] ? 0 : Math.hypot(...normal) / 2;
@@ -90,7 +90,7 @@ export class TriangleSearch {
   }
 
   /** The squared distance of a box. @param {number} box @param {number} x @param {number} y @param {number} z */
-  distance(box, x, y, z) {
+  #distance(box, x, y, z) {
     const { boxes } = this;
     const at = BOX * box;
     const dx = Math.max(boxes[at] - x, x - boxes[at + 3], 0);
@@ -115,12 +115,12 @@ export class TriangleSearch {
     while (depth) {
       const box = stack[--depth];
       // Rounding of a face's distance must not hide one that is equally near.
-      if (this.distance(box, x, y, z) > this.squared * (1 + 1e-12)) continue;
+      if (this.#distance(box, x, y, z) > this.squared * (1 + 1e-12)) continue;
       if (box >= this.leaves) {
-        this.eachFace(box, look);
+        this.#eachFace(box, look);
         continue;
       }
-      const turned = this.distance(2 * box, x, y, z) < this.distance(2 * box + 1, x, y, z) ? 1 : 0;
+      const turned = this.#distance(2 * box, x, y, z) < this.#distance(2 * box + 1, x, y, z) ? 1 : 0;
       stack[depth++] = 2 * box + turned;
       stack[depth++] = 2 * box + 1 - turned;
     }
@@ -128,13 +128,13 @@ export class TriangleSearch {
 
   /** Whether the winding number is over a half, of either sign. @param {number} x @param {number} y @param {number} z */
   inside(x, y, z) {
-    const rough = Math.abs(this.winding(x, y, z, SEARCH.away));
+    const rough = Math.abs(this.#winding(x, y, z, SEARCH.away));
     if (Math.abs(rough - 0.5) > SEARCH.doubt) return rough > 0.5;
-    return Math.abs(this.winding(x, y, z, SEARCH.away * SEARCH.again)) > 0.5;
+    return Math.abs(this.#winding(x, y, z, SEARCH.away * SEARCH.again)) > 0.5;
   }
 
   /** @param {number} x @param {number} y @param {number} z @param {number} away radii from where faces count as one */
-  winding(x, y, z, away) {
+  #winding(x, y, z, away) {
     const { stack, boxes, corners, sheet } = this;
     let [sum, depth] = [0, 0];
     const add = (/** @type {number} */ face) => {
@@ -150,7 +150,7 @@ export class TriangleSearch {
       if (squared > (away * boxes[at + RADIUS]) ** 2) {
         const facing = dx * boxes[at + NORMAL] + dy * boxes[at + NORMAL + 1] + dz * boxes[at + NORMAL + 2];
         sum += facing / (squared * Math.sqrt(squared));
-      } else if (box >= this.leaves) this.eachFace(box, add);
+      } else if (box >= this.leaves) this.#eachFace(box, add);
       else {
         stack[depth++] = 2 * box;
         stack[depth++] = 2 * box + 1;

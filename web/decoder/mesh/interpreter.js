@@ -24,11 +24,11 @@ export class Interpreter {
     for (const [name, number] of Object.entries(program.exports)) {
       this.exports[name] ??= (/** @type {number[]} */ ...values) => {
         this.stack.set(values);
-        this.call(number, values.length);
+        this.#call(number, values.length);
         return this.stack[0];
       };
     }
-    this.call(program.start, 0);
+    this.#call(program.start, 0);
   }
 
   get buffer() {
@@ -49,7 +49,7 @@ export class Interpreter {
    * @param {number} number @param {number} top of the stack
    * @returns {number} the top then
    */
-  call(number, top) {
+  #call(number, top) {
     const { program, stack } = this;
     const { parameters, results } = program.functions[number];
     const base = top - parameters;
@@ -58,7 +58,7 @@ export class Interpreter {
     else {
       const { locals, start } = program.codes[number - program.imports.length];
       stack.fill(0, top, top + locals);
-      const end = this.run(start, base, top + locals);
+      const end = this.#run(start, base, top + locals);
       stack.copyWithin(base, end - results, end);
     }
     return base + results;
@@ -69,7 +69,7 @@ export class Interpreter {
    * @param {number} at in the program @param {number} base where variables begin on the stack @param {number} top
    * @returns {number} the top at the end
    */
-  run(at, base, top) {
+  #run(at, base, top) {
     const { list, stack, float } = this;
     const { doubles, globals } = this.program;
     let { view } = this;
@@ -89,7 +89,7 @@ export class Interpreter {
         case 0x0f:
           return top;
         case 0x10:
-          top = this.call(list[at++], top);
+          top = this.#call(list[at++], top);
           view = this.view;
           break;
         case 0x1a:

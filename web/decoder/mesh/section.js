@@ -9,7 +9,7 @@ const FLOATS = ["step", "origin", "uv_step", "uv_origin", "rotation", "offset", 
 /** What may be wrong, what is expected, where # is a limit, and what is found if no number; by the numbers of assembly/host.ts. */
 const WRONG = [
   ["bytes", "as many as the parts need"],
-  ["number", "at most 24 bits", "more"],
+  ["bits of a number", "0 to 24", "more"],
   ["coordinate", "0 to #"],
   ["end", "zeros at most"],
   ["third_point", "another than the gate's"],
@@ -24,17 +24,17 @@ const WRONG = [
   ["uv", "0 to #"],
   ["parts", "1 to #"],
   ["faces", "1 to #"],
-  ["position_bits", "at most #"],
-  ["uv_bits", "at most #"],
+  ["position_bits", "0 to #"],
+  ["uv_bits", "0 to #"],
   ["step", "above 0", "less"],
   ["faces", "three vertices each", "fewer"],
-  ["material_bits", "at most #"],
+  ["material_bits", "0 to #"],
   ["placements", "1 to #"],
-  ["placement_materials", "at most # more"],
+  ["placement_materials", "0 to # more"],
   ["rotation", "a unit quaternion", "another"],
   ["scale", "above 0", "less"],
-  ["placed_faces", "at most #"],
-  ...FLOATS.map((field) => [field, "a finite number", "another"]),
+  ["placed_faces", "0 to #"],
+  ...FLOATS.map((field) => [field, "finite", "another"]),
 ];
 
 /** Memory in bytes that is kept for the next file at most. */
