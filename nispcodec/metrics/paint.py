@@ -43,9 +43,13 @@ class Paint:
 
         Faces of both surfaces have the numbers of these materials.
         """
-        first, second = self._at(original, matches.original), self._at(decoded, matches.decoded)
-        found: Float64Array = np.square(second - first, dtype=np.float64).mean(axis=1)
+        found: Float64Array = np.square(self.differences(original, decoded, matches)).mean(axis=1)
         return found
+
+    def differences(self, original: Surface, decoded: Surface, matches: Matches) -> Float64Array:
+        """(n, 3): by how much the decoded colors of pairs are above the original's, as `misses`."""
+        first, second = self._at(original, matches.original), self._at(decoded, matches.decoded)
+        return second.astype(np.float64) - first
 
     def _at(self, surface: Surface, points: SurfacePoints) -> Float32Array:
         mesh, faces = surface.mesh, points.faces

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from nispcodec.core.arrays import Float64Array, Int64Array
+from nispcodec.core.arrays import BoolArray, Float64Array, Int64Array
 from nispcodec.core.connectivity import cell_ids
 from nispcodec.core.extras import require
 from nispcodec.simplify.config import CollapseConfig
@@ -15,32 +15,41 @@ from nispcodec.simplify.triangles import Triangles, distinct, joined
 
 
 def collapsed(
-    triangles: Triangles, faces: int, config: CollapseConfig = CollapseConfig()
+    triangles: Triangles,
+    faces: int,
+    config: CollapseConfig = CollapseConfig(),
+    kept: BoolArray | None = None,
 ) -> Triangles:
     """About `faces` triangles, as few as can be had; positions and UVs are some of the given ones.
 
     Bodies smaller than the error are dropped, unless together they are a notable part of the area:
     then none is, those of few faces are kept as they are, and there may be more than `faces`.
+    kept: (m, 3), the corners of faces whose vertices stay.
     Raises NispError without meshoptimizer.
     """
     if faces >= len(triangles):
         return triangles
     require("meshoptimizer", extra="encode", what_for="simplifying")
-    found = _simplified(triangles, faces, PRUNE, config)
+    found = _simplified(triangles, faces, PRUNE, config, kept)
     if found is not None and _lost(triangles, found) <= config.notable_area:
         return found
     bodies = triangles.bodies
     cards = np.asarray(np.bincount(bodies)[bodies] <= config.card_faces)
     if cards.all():
         return triangles
-    rest = _simplified(triangles.only(~cards), max(faces - int(cards.sum()), 1), 0, config)
+    kept = None if kept is None else kept[~cards]
+    rest = _simplified(triangles.only(~cards), max(faces - int(cards.sum()), 1), 0, config, kept)
     if rest is None:
         return triangles
     return joined(triangles.only(cards), rest) if cards.any() else rest
 
 
 def _simplified(
-    triangles: Triangles, faces: int, options: int, config: CollapseConfig
+    triangles: Triangles,
+    faces: int,
+    options: int,
+    config: CollapseConfig,
+    kept: BoolArray | None,
 ) -> Triangles | None:
     """None where no triangle is left."""
     corners = cell_ids(triangles.patches[:, None], triangles.faces, triangles.uv_faces)
@@ -53,6 +62,7 @@ def _simplified(
         config.uv_weight,
         faces,
         options,
+        None if kept is None else kept.ravel()[at],
     )
     # At seams faces are left with two corners in one place.
     found = at[found]

@@ -118,6 +118,23 @@ class CreaseConfig:
 
 
 @dataclass(frozen=True)
+class DiscoloredConfig:
+    """Which places of a simplified surface have lost their color, and how they get it back.
+
+    neighbors  points over which colors are meant: of 20,000, about 1.5 % of the radius around each
+    notable    difference of such means from which on one sees it, sRGB-encoded
+    beside     vertices of faces up to so far from such points stay, normalized frame
+    most_kept  vertices that may stay, as a share of the faces asked for: where there are more, all
+               is coarse, and other places would pay for these
+    """
+
+    neighbors: int = 12
+    notable: float = 0.15
+    beside: float = 0.02
+    most_kept: float = 0.015
+
+
+@dataclass(frozen=True)
 class LadderConfig:
     """Which candidates are made.
 
@@ -138,6 +155,7 @@ class LadderConfig:
     collapse: CollapseConfig = CollapseConfig()
     fit: FitConfig = FitConfig()
     copies: CopiesConfig = CopiesConfig()
+    discolored: DiscoloredConfig = DiscoloredConfig()
 
 
 @dataclass(frozen=True)

@@ -6,6 +6,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
+from scipy.spatial import cKDTree
 
 from nispcodec.core.arrays import BoolArray, Float64Array, Int32Array, Int64Array
 from nispcodec.core.asset import TexturedMesh
@@ -135,6 +136,18 @@ class Copies:
         pieces = _pieces(triangles, self.groups)
         return scene([(group.home(piece).mesh(), group.placements) for group, piece in pieces])
 
+    def vertices_at(self, places: Float64Array, tolerance: float) -> BoolArray:
+        """(n,): vertices of `triangles` that stand, or copies of them, at one of (k, 3) places."""
+        weights, shifts = _weights(self.triangles, self.groups)
+        homes = (self.triangles.positions - shifts) / weights
+        owners, tree = _vertex_owners(self.triangles, self.groups), cKDTree(places)
+        found = np.zeros(len(homes), np.bool_)
+        for number, group in enumerate(self.groups):
+            own = np.flatnonzero(owners == number)
+            for placement in group.placements:
+                found[own] |= tree.query(placed_points(placement, homes[own]))[0] <= tolerance
+        return found
+
     def _held(self, triangles: Triangles) -> Iterator[tuple[Group, Triangles]]:
         """The triangles of each part, in the normalized frame; first all that has no placements."""
         plain, held = [], []
@@ -169,6 +182,13 @@ def _owners(triangles: Triangles, groups: Sequence[Group]) -> Int64Array:
     return np.searchsorted(starts, triangles.patches, side="right") - 1
 
 
+def _vertex_owners(triangles: Triangles, groups: Sequence[Group]) -> Int64Array:
+    """(n,): the number of the group of each position."""
+    owners = np.zeros(len(triangles.positions), np.int64)
+    owners[triangles.faces] = _owners(triangles, groups)[:, None]
+    return owners
+
+
 def _enlarged(held: Triangles, groups: Sequence[Group]) -> Triangles:
     """Each group with its weight, in its place."""
     weights, shifts = _weights(held, groups)
@@ -180,7 +200,6 @@ def _enlarged(held: Triangles, groups: Sequence[Group]) -> Triangles:
 
 def _weights(triangles: Triangles, groups: Sequence[Group]) -> tuple[Float64Array, Float64Array]:
     """(n, 1), (n, 3): the weight and shift of the group that each position is of."""
-    owners = np.zeros(len(triangles.positions), np.int64)
-    owners[triangles.faces] = _owners(triangles, groups)[:, None]
+    owners = _vertex_owners(triangles, groups)
     weights = np.array([group.weight for group in groups])[owners, None]
     return weights, np.array([group.shift for group in groups])[owners]

@@ -143,7 +143,7 @@ class Original:
             return Errors(np.inf, np.inf, np.inf, np.inf)
         outer = sides_of(other, points).outer
         points = points[outer] if outer.any() else points
-        there = Matches(self.points, other.closest(self.surface.outlook(self.points)))
+        there = self.matches(other)
         directions = [there[self.outer], Matches(self._closest(points), points)]
         misses = [uv_errors(self.surface, other, each) for each in directions]
         seen = [each for each in misses if len(each)]
@@ -159,6 +159,10 @@ class Original:
             lost=FarPoints.of(self.surface.mesh, self.points, there.distances),
             far_part=distance - near,
         )
+
+    def matches(self, other: Surface) -> Matches:
+        """All points, and the closest ones of another surface."""
+        return Matches(self.points, other.closest(self.surface.outlook(self.points)))
 
     def _color(self, other: Surface, directions: Sequence[Matches]) -> float:
         if self.paint is None:

@@ -15,6 +15,7 @@ from nispcodec.simplify.collapse import collapsed
 from nispcodec.simplify.config import LadderConfig
 from nispcodec.simplify.copies import Copies
 from nispcodec.simplify.copy_search import copies_of
+from nispcodec.simplify.discolored import Discolored
 from nispcodec.simplify.errors import Counted, Errors, Original, mesh_of
 from nispcodec.simplify.position_fit import fitted_positions
 from nispcodec.simplify.scene import scene
@@ -97,11 +98,28 @@ class Simplifier:
         if faces not in self._fitted:
             triangles = self.source.triangles
             if faces < len(triangles):
-                fewer = collapsed(triangles, faces, self.config.collapse)
+                fewer = self._collapsed(faces)
                 placed = fitted_positions(self.source, fewer, self.config.fit, self.seed)
                 triangles = shaded(self.source, placed)
             self._fitted[faces] = triangles
         return self._fitted[faces]
+
+    def _collapsed(self, faces: int) -> Triangles:
+        """About so many triangles; vertices stay where colors would be lost in a few places."""
+        config, triangles = self.config, self.source.triangles
+        fewer = collapsed(triangles, faces, config.collapse)
+        lost = self._discolored(fewer)
+        if not lost.share:
+            return fewer
+        kept = self.copies.vertices_at(lost.corners, config.copies.tolerance)
+        if not 0 < kept.sum() <= config.discolored.most_kept * faces:
+            return fewer
+        other = collapsed(triangles, faces, config.collapse, kept[triangles.faces])
+        return other if self._discolored(other).share < lost.share else fewer
+
+    def _discolored(self, triangles: Triangles) -> Discolored:
+        decoded = self.copies.scene(triangles)
+        return Discolored.of(self.original, decoded, self.config.discolored)
 
     def candidate(self, faces: int, bits: int, uv_bits: int) -> Candidate:
         """About so many triangles, rounded, coded and measured."""

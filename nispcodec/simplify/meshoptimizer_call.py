@@ -6,7 +6,7 @@ import ctypes
 
 import numpy as np
 
-from nispcodec.core.arrays import Float64Array, Int64Array, IntArray
+from nispcodec.core.arrays import BoolArray, Float64Array, Int64Array, IntArray
 
 PRUNE = 8
 """The library's option to drop bodies that are smaller than the error."""
@@ -19,11 +19,12 @@ def fewer_triangles(
     uv_weight: float,
     count: int,
     options: int,
+    kept: BoolArray | None = None,
 ) -> Int64Array:
     """About `count` triangles (k, 3), as few as can be had, of vertices that the given ones have.
 
     faces (m, 3) into positions (n, 3) and uvs (n, 2); an error of one unit of UV counts as
-    `uv_weight` times the extent. Nothing may be left.
+    `uv_weight` times the extent. kept: (n,), those that stay. Nothing may be left.
     """
     from meshoptimizer import simplify_with_attributes
 
@@ -38,6 +39,7 @@ def fewer_triangles(
         np.full(2, uv_weight, dtype=np.float32),
         target_index_count=3 * count,
         target_error=1.0,
+        vertex_lock=None if kept is None else kept.astype(np.uint8),
         options=options,
     )
     return indices[:left].astype(np.int64).reshape(-1, 3)

@@ -67,3 +67,11 @@ def test_faces_whose_corners_share_a_place_are_left_out(monkeypatch: pytest.Monk
     found = collapsed(triangles, len(triangles) - 1)
     assert len(found) == len(triangles)
     assert (found.faces != np.roll(found.faces, 1, axis=1)).all()
+
+
+@pytest.mark.parametrize("triangles", [ball(), cards()])
+def test_corners_that_are_kept_stay(triangles: Triangles) -> None:
+    chosen = np.flatnonzero(triangles.positions[:, 0] > triangles.positions[:, 0].max() - 0.2)
+    kept = np.isin(triangles.faces, chosen)
+    fewer = collapsed(triangles, 60, kept=kept)
+    assert {tuple(row) for row in triangles.positions[chosen]} <= set(map(tuple, fewer.positions))

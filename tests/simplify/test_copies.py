@@ -11,6 +11,7 @@ from nispcodec.core.arrays import Float64Array
 from nispcodec.core.asset import Material
 from nispcodec.core.document import Document, Frame
 from nispcodec.core.mesh_part import MeshPart
+from nispcodec.core.placing import placed_points
 from nispcodec.format import mesh
 from nispcodec.model import NispModel
 from nispcodec.simplify.config import CopiesConfig
@@ -107,3 +108,12 @@ def test_positions_are_rounded_as_parts_are() -> None:
     (part,) = COPIES.parts(COPIES.triangles, BITS, BITS)
     home = COPIES.groups[0].home(rounded)
     np.testing.assert_allclose(part.normalized()[part.faces], home.corners, atol=1e-6)
+
+
+def test_vertices_are_found_where_a_copy_of_them_stands() -> None:
+    given, places = COPIES.triangles, COPIES.groups[0].placements
+    home = COPIES.groups[0].home(given).positions
+    for placement in places:
+        found = COPIES.vertices_at(placed_points(placement, home[[3, 8]]), 1e-6)
+        assert np.flatnonzero(found).tolist() == [3, 8]
+    assert not COPIES.vertices_at(np.array([[0.0, 0.0, 3.0]]), 1e-6).any()

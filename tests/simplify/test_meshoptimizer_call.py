@@ -29,3 +29,9 @@ def test_uvs_that_bend_keep_vertices() -> None:
     assert heeded <= len(FACES)
     moved = POSITIONS[fewer_triangles(FACES, POSITIONS, bent, 100.0, 40, 0)]
     assert np.isin(moved.reshape(-1, 3), POSITIONS).all()
+
+
+def test_vertices_that_are_kept_stay() -> None:
+    kept = np.isclose(np.abs(POSITIONS[:, :2]).max(axis=1), 0.5)
+    found = fewer_triangles(FACES, POSITIONS, POSITIONS[:, :2], 1.0, 2, 0, kept)
+    assert np.isin(np.flatnonzero(kept), found).all()
