@@ -103,7 +103,7 @@ def command(
     It is in the units of the original. Of a field, as many triangles are written
     as keep it within a part of its own error, from a grid of 256 to 512 cells a
     side. A glTF gets its buffer and images
-    beside it, an OBJ its MTL and images, a PLY its images.
+    beside it, an OBJ its MTL and images, a PLY its images. Levels share their images.
 
     \b
     Example: nisp decode model.nisp --mesh -o out.glb
@@ -188,7 +188,11 @@ def _planned(model: NispModel, paths: list[Path], colors: bool, rebake: bool) ->
     materials, textures = document.materials, document.textures
     if rebake:
         materials, textures = _rebaked_appearance(model)
-    return [file for path in paths for file in mesh_paths(path, materials, textures, colors)]
+    first, *coarser = paths
+    files = mesh_paths(first, materials, textures, colors)
+    for path in coarser:
+        files += mesh_paths(path, materials, textures, colors, finer=first)
+    return files
 
 
 def _rebaked_appearance(model: NispModel) -> tuple[tuple[Any, ...], tuple[Any, ...]]:
@@ -226,10 +230,11 @@ def _written(
         listen(Progress(stage="atlas", overall=0.5))
         meshes = [baked(model, mesh, rebake) for mesh in meshes]
     listen(Progress(stage="files", overall=0.9))
-    levels = []
+    levels: list[Level] = []
     for mesh, path in zip(meshes, paths, strict=True):
         seen = model.color(mesh.positions) if colors else None
-        levels.append(Level(mesh, write_mesh(mesh, path, seen, compress)))
+        finer = paths[0] if levels else None
+        levels.append(Level(mesh, write_mesh(mesh, path, seen, compress, finer)))
     return levels
 
 

@@ -18,6 +18,7 @@ from nispcodec.io.write.colors import untextured
 from nispcodec.io.write.glb import glb_bytes
 from nispcodec.io.write.gltf import gltf_files
 from nispcodec.io.write.gltf_compression import COMPRESSIONS
+from nispcodec.io.write.images_beside import ImagesBeside
 from nispcodec.io.write.losses import gltf_losses, obj_losses, ply_losses, stl_losses, usdz_losses
 from nispcodec.io.write.obj import obj_files
 from nispcodec.io.write.ply import ply_files
@@ -27,19 +28,19 @@ from nispcodec.io.write.usdz import usdz_bytes
 # OBJ and PLY name their images in lines of text.
 _CONTROL = re.compile(r"[\x00-\x1f\x7f]")
 
-Writer = Callable[[TexturedMesh, str, Float32Array | None], dict[str, bytes]]
-"""Mesh, stem of the file name, colors (n, 4) of the vertices or None -> file names and bytes."""
+Writer = Callable[[TexturedMesh, str, ImagesBeside, Float32Array | None], dict[str, bytes]]
+"""Mesh, stem of the file name, images, colors (n, 4) or None -> file names and bytes."""
 
 
 def _alone(
     suffix: str, write: Callable[[TexturedMesh, Float32Array | None], bytes]
 ) -> dict[str, Writer]:
     """The writer of a format that is one file."""
-    return {suffix: lambda mesh, stem, colors: {f"{stem}{suffix}": write(mesh, colors)}}
+    return {suffix: lambda mesh, stem, images, colors: {f"{stem}{suffix}": write(mesh, colors)}}
 
 
 COMPRESSING: dict[str, Callable[..., dict[str, bytes]]] = {
-    ".glb": lambda mesh, stem, *how: {f"{stem}.glb": glb_bytes(mesh, *how)},
+    ".glb": lambda mesh, stem, images, *how: {f"{stem}.glb": glb_bytes(mesh, *how)},
     ".gltf": gltf_files,
 }
 """Writers that take a compression as well."""
@@ -78,15 +79,17 @@ def write_mesh(
     path: str | Path,
     colors: Float32Array | None = None,
     compress: str | None = None,
+    finer: Path | None = None,
 ) -> list[Path]:
     """Write the mesh in the format of the path's suffix -> the files written, `path` last.
 
     A glTF has its buffer and images beside it, an OBJ its MTL and images, a PLY its images; what a
     format cannot hold is left out (`losses`). Each file is written whole or not at all. `colors`
     (n, 4), sRGB-encoded in [0, 1], one for each position, take the place of UVs, materials and
-    textures. `compress`, one of `COMPRESSIONS`, makes glTF smaller. Raises MeshError for an
-    unknown suffix, no faces, colors or a compression that do not fit or that the format cannot
-    hold; NispError when writing fails, and without the package that compresses.
+    textures. `compress`, one of `COMPRESSIONS`, makes glTF smaller. `finer` is where the same mesh
+    with more triangles was written: its images are shared, and not among the files. Raises
+    MeshError for an unknown suffix, no faces, colors or a compression that do not fit or that the
+    format cannot hold; NispError when writing fails, and without the package that compresses.
     """
     path = Path(path)
     expect_compressible(path, compress)
@@ -95,7 +98,7 @@ def write_mesh(
     written = []
     if colors is not None:
         mesh = untextured(mesh, colors)
-    for name, data in _files(mesh, path, colors, compress).items():
+    for name, data in _files(mesh, path, colors, finer, compress).items():
         written.append(path.with_name(name))
         write_atomic(written[-1], data)
     return written
@@ -119,12 +122,16 @@ def expect_compressible(path: Path, compress: str | None) -> None:
 
 
 def mesh_paths(
-    path: Path, materials: Sequence[Material], textures: Sequence[Texture], colored: bool = False
+    path: Path,
+    materials: Sequence[Material],
+    textures: Sequence[Texture],
+    colored: bool = False,
+    finer: Path | None = None,
 ) -> list[Path]:
     """The files that `write_mesh` writes for any mesh of these materials and textures.
 
-    `colored` is for a mesh that is written with colors. Raises MeshError as `write_mesh` does, for
-    a suffix, and for colors in a format that holds none.
+    `colored` is for a mesh that is written with colors, `finer` as there. Raises MeshError as
+    `write_mesh` does, for a suffix, and for colors in a format that holds none.
     """
     # USD's packager takes no empty files.
     names = tuple(replace(each, data=b"-", mime="image/png") for each in textures)
@@ -132,7 +139,7 @@ def mesh_paths(
     colors = np.ones((3, 4), np.float32) if colored else None
     if colors is not None:
         mesh = untextured(mesh, colors)
-    return [path.with_name(name) for name in _files(mesh, path, colors)]
+    return [path.with_name(name) for name in _files(mesh, path, colors, finer)]
 
 
 def level_paths(path: Path, levels: int) -> list[Path]:
@@ -149,7 +156,11 @@ def _triangle() -> TexturedMesh:
 
 
 def _files(
-    mesh: TexturedMesh, path: Path, colors: Float32Array | None, compress: str | None = None
+    mesh: TexturedMesh,
+    path: Path,
+    colors: Float32Array | None,
+    finer: Path | None,
+    compress: str | None = None,
 ) -> dict[str, bytes]:
     """File names and bytes, that of `path` last."""
     suffix = path.suffix.lower()
@@ -158,9 +169,10 @@ def _files(
         raise MeshError(f"{path}: expected a suffix of {', '.join(SUFFIXES)}, found {found}")
     if "\0" in str(path) or _CONTROL.search(path.name):
         raise MeshError(f"{str(path)!r}: expected a name without control characters")
+    images = ImagesBeside.of(mesh, (finer or path).stem, shared=finer is not None)
     if compress:
-        files = COMPRESSING[suffix](mesh, path.stem, colors, compress)
+        files = COMPRESSING[suffix](mesh, path.stem, images, colors, compress)
     else:
-        files = WRITERS[suffix](mesh, path.stem, colors)
+        files = WRITERS[suffix](mesh, path.stem, images, colors)
     files[path.name] = files.pop(f"{path.stem}{suffix}")
     return files

@@ -15,6 +15,7 @@ from nispcodec_cli.decode import free_memory
 
 from nispcodec.extract.config import ResolutionConfig
 from nispcodec.io.load import load_mesh
+from nispcodec.io.save import level_paths
 from nispcodec.model import NispModel
 from tests.cli.conftest import done, nisp, refused
 
@@ -94,6 +95,18 @@ def test_lods(model: Path, tmp_path: Path) -> None:
     assert [each["faces"] for each in told] == [len(mesh.faces) for mesh in meshes]
     again = nisp("decode", model, "-o", tmp_path / "out.lod1.glb", *options)
     refused(again, "expected no file of this name, found one")
+
+
+@pytest.mark.parametrize("suffix", [".gltf", ".obj"])
+def test_levels_share_images(model: Path, tmp_path: Path, suffix: str) -> None:
+    out = tmp_path / f"out{suffix}"
+    done("decode", model, "-o", out, "--resolution", 32, "--lods", 3)
+    levels = [load_mesh(path) for path in level_paths(out, 3)]
+    assert levels[0].textures
+    assert all(each.textures == levels[0].textures for each in levels)
+    # A level is a file and what it alone has: a buffer, or a library of materials.
+    assert len(list(tmp_path.glob("out.*"))) == 6
+    assert len(list(tmp_path.glob("out_*"))) == len(levels[0].textures)
 
 
 def test_levels_that_are_no_coarser_are_told_once(model: Path, tmp_path: Path) -> None:

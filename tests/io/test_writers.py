@@ -22,6 +22,7 @@ from nispcodec.core.texture import linear_to_srgb
 from nispcodec.io.load import load_mesh
 from nispcodec.io.save import SUFFIXES, losses, mesh_paths, write_mesh
 from nispcodec.io.write.glb import glb_bytes
+from nispcodec.io.write.images_beside import ImagesBeside
 from nispcodec.io.write.obj import obj_files
 from tests import tiny
 
@@ -230,6 +231,18 @@ def test_the_paths_are_known_before_the_mesh(
     assert expected[-1] == path
 
 
+@pytest.mark.parametrize("suffix", [".gltf", ".obj", ".ply"])
+def test_a_coarser_mesh_shares_images(mesh: TexturedMesh, tmp_path: Path, suffix: str) -> None:
+    finer, path = tmp_path / f"a{suffix}", tmp_path / f"b{suffix}"
+    write_mesh(mesh, finer)
+    before = {each: each.stat().st_mtime_ns for each in tmp_path.iterdir()}
+    written = write_mesh(mesh, path, finer=finer)
+    assert written == mesh_paths(path, mesh.materials, mesh.textures, finer=finer)
+    assert all(each.stem == "b" for each in written)
+    assert {each: each.stat().st_mtime_ns for each in before} == before
+    assert load_mesh(path).textures == load_mesh(finer).textures
+
+
 def test_gltf_names_its_files_as_uris(mesh: TexturedMesh, tmp_path: Path) -> None:
     written = write_mesh(mesh, tmp_path / "a: 100 % #1 ?ü.gltf")
     tree = json.loads(written[-1].read_bytes())
@@ -280,7 +293,7 @@ def test_png_made_for_avif_takes_no_other_image_of_its_name(
 
 
 def test_obj_text(mesh: TexturedMesh) -> None:
-    files = obj_files(mesh, "out")
+    files = obj_files(mesh, "out", ImagesBeside.of(mesh, "out"))
     assert set(files) == {"out.obj", "out.mtl", "out_a_b.png", "out_2_a_b.png"}
     assert files["out_a_b.png"] == mesh.textures[0].data
     lines = files["out.obj"].decode().splitlines()

@@ -9,15 +9,15 @@ import numpy as np
 from nispcodec.core.arrays import AnyArray, Float32Array
 from nispcodec.core.asset import Material, TexturedMesh, TextureMap
 from nispcodec.core.slots import BY_NAME
-from nispcodec.io.write.names import image_names, plain, unique
-from nispcodec.io.write.plain_images import MIMES, plain_image
+from nispcodec.io.write.images_beside import ImagesBeside
+from nispcodec.io.write.names import plain, unique
 from nispcodec.io.write.vertices import shading_normals
 
 
 def obj_files(
-    mesh: TexturedMesh, stem: str, colors: Float32Array | None = None
+    mesh: TexturedMesh, stem: str, images: ImagesBeside, colors: Float32Array | None = None
 ) -> dict[str, bytes]:
-    """File name -> bytes of STEM.obj, STEM.mtl and one STEM_NAME for every texture in use.
+    """File name -> bytes of STEM.obj, STEM.mtl and `images` for every texture in use.
 
     Colors (n, 4), sRGB-encoded, stand behind the positions, as many tools read them, without
     alpha; then there is no MTL. Occlusion and metallic-roughness maps are left out, and images that
@@ -25,14 +25,12 @@ def obj_files(
     """
     if colors is not None:
         return {f"{stem}.obj": _colored_obj(mesh, colors).encode(errors="surrogateescape")}
-    images = image_names(stem, mesh.textures)
     names = unique([plain(material.name) for material in mesh.materials])
     slots = [slots for material in mesh.materials for slots in material.maps.items()]
     wanted = {used.texture for slot, used in slots if BY_NAME[slot].mtl_write}
-    files = {images[each]: plain_image(mesh.textures[each], MIMES).data for each in sorted(wanted)}
     materials = zip(mesh.materials, names, strict=True)
-    mtl = "\n".join(_mtl(material, name, images) for material, name in materials)
-    return files | {
+    mtl = "\n".join(_mtl(material, name, images.names) for material, name in materials)
+    return images.files(mesh, sorted(wanted)) | {
         f"{stem}.mtl": mtl.encode(errors="surrogateescape"),
         f"{stem}.obj": _obj(mesh, f"{stem}.mtl", names).encode(errors="surrogateescape"),
     }

@@ -6,17 +6,16 @@ import numpy as np
 
 from nispcodec.core.arrays import AnyArray, Float32Array, Int32Array
 from nispcodec.core.asset import TexturedMesh
-from nispcodec.io.write.names import image_names
-from nispcodec.io.write.plain_images import MIMES, plain_image
+from nispcodec.io.write.images_beside import ImagesBeside
 from nispcodec.io.write.vertices import Vertices, origin, shading_normals, split_vertices
 
 _TYPES = {"<f4": "float", "<f8": "double", "u1": "uchar", "<i4": "int"}
 
 
 def ply_files(
-    mesh: TexturedMesh, stem: str, colors: Float32Array | None = None
+    mesh: TexturedMesh, stem: str, images: ImagesBeside, colors: Float32Array | None = None
 ) -> dict[str, bytes]:
-    """File name -> bytes of STEM.ply, binary little-endian, and one STEM_NAME for each base color.
+    """File name -> bytes of STEM.ply, binary little-endian, and `images` for each base color.
 
     A seam's vertices are doubled for their UVs s, t; those of creases for normals nx, ny, nz.
     Colors (n, 4), sRGB-encoded RGBA of each
@@ -25,15 +24,17 @@ def ply_files(
     """
     maps = [each.maps.get("base_color") for each in mesh.materials]
     used = sorted({each.texture for each in maps if each is not None})
-    names = image_names(stem, mesh.textures)
-    images = {names[index]: plain_image(mesh.textures[index], MIMES).data for index in used}
     numbers = np.array([-1 if each is None else used.index(each.texture) for each in maps], "<i4")
     shown = np.where(mesh.has_uv, numbers[mesh.face_materials], -1).astype("<i4")
     vertices = split_vertices(mesh, np.arange(len(mesh.faces)), shading_normals(mesh))
     rows = _vertex_rows(mesh, vertices, colors)
     faces = _face_rows(vertices, shown if used else None)
-    body = _header(rows, faces, list(images)) + rows.tobytes() + faces.tobytes()
-    return images | {f"{stem}.ply": body}
+    body = (
+        _header(rows, faces, [images.names[each] for each in used])
+        + rows.tobytes()
+        + faces.tobytes()
+    )
+    return images.files(mesh, used) | {f"{stem}.ply": body}
 
 
 def _vertex_rows(mesh: TexturedMesh, vertices: Vertices, colors: Float32Array | None) -> AnyArray:
