@@ -74,9 +74,11 @@ build/blender/bin/python:
 blender: setup build/blender/bin/python
 	$(BIN)/pytest tests/addons
 
+# Each worker has half of the files, so that what their tests share is made once, and takes from the
+# other when it is done. Threads of BLAS that wait for work would spin on the other's core.
 test: lint docs package
 	$(BIN)/python -m benchmarks.status
-	$(BIN)/pytest -n 2 --cov --cov-report=term
+	OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 $(BIN)/pytest -n 2 --dist worksteal --cov --cov-report=term
 
 fuzz: setup
 	$(BIN)/pip install --disable-pip-version-check -q -c constraints.txt -e '.[fuzz]'

@@ -16,7 +16,7 @@ from nispcodec.encode.config import FormConfig
 from nispcodec.encode.mesh_size import fewest, nearest_of_size
 from nispcodec.encode.part_errors import part_errors
 from nispcodec.encode.rungs import Cost, Rungs
-from nispcodec.extract.meshing import default_resolution, expected_faces, textured_mesh
+from nispcodec.extract.meshing import default_resolution, textured_mesh
 from nispcodec.format import mesh
 from nispcodec.geometry.analysis import Analysis
 from nispcodec.geometry.shown import Shown, shown
@@ -122,9 +122,8 @@ class MeshForm:
         """Cells a side as a decode has them, or fewer where that would take long to measure."""
         if field is None:
             return None
-        cells = default_resolution(field.sdf, field.half_thickness)
-        faces = expected_faces(field.sdf, cells)
-        return round(cells * min(1.0, math.sqrt(self._config.measured_faces / max(faces, 1))))
+        most_faces = self._config.measured_faces
+        return default_resolution(field.sdf, field.half_thickness, most_faces=most_faces)
 
     def estimate(self, distance: float, few: float, many: float) -> float:
         """About how many bytes the asset takes at a mean distance.

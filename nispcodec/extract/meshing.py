@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import replace
 
@@ -101,9 +102,15 @@ def negligible_error(
 
 
 def default_resolution(
-    network: Network, half_thickness: float, config: ResolutionConfig = ResolutionConfig()
+    network: Network,
+    half_thickness: float,
+    config: ResolutionConfig = ResolutionConfig(),
+    most_faces: float = math.inf,
 ) -> int:
-    """256; for thin walls up to 512, as triangles allow; one cell for sheets' half thickness."""
+    """256; for thin walls up to 512, as triangles allow; one cell for sheets' half thickness.
+
+    Fewer where that would give more than about `most_faces` triangles.
+    """
     points, size = near_surface(network, config.least)
     some = points[:: max(1, len(points) // config.wall_samples)]
     thin = thin_share(network, some, size, 2 * CUBE / config.least, config)
@@ -111,7 +118,9 @@ def default_resolution(
     affordable = min(max(config.least, int(config.least * np.sqrt(blocks))), config.most)
     cells = affordable if thin > config.thin_share else config.least
     sheets = int(np.ceil(2 * CUBE / half_thickness)) if half_thickness else 0
-    return min(max(cells, sheets), config.highest)
+    cells = min(max(cells, sheets), config.highest)
+    faces = _faces_of(len(points), cells, config)
+    return round(cells * min(1.0, math.sqrt(most_faces / max(faces, 1))))
 
 
 def expected_faces(
@@ -119,7 +128,12 @@ def expected_faces(
 ) -> int:
     """About how many triangles a grid of so many cells along its edge gives."""
     points, _ = near_surface(network, config.least)
-    return int(len(points) * config.faces_per_block * (resolution / config.least) ** 2)
+    return _faces_of(len(points), resolution, config)
+
+
+def _faces_of(blocks: int, resolution: int, config: ResolutionConfig) -> int:
+    """The same, by the blocks of the least resolution that are near the surface."""
+    return int(blocks * config.faces_per_block * (resolution / config.least) ** 2)
 
 
 def field_surface(

@@ -16,14 +16,16 @@ from nispcodec_cli.ending import Terminated, ending_on_sigterm
 from nispcodec.io.save import write_mesh
 from tests.metrics.shapes import sphere
 
+ROOT = Path(__file__).parents[2]
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="signals of POSIX")
 
 # Ends the process itself, so that the place is the same on every machine: at a stage of the encode,
-# at a share of the whole, or while a file is read or written.
+# at a share of a network's fit, or while a file is read or written. The fit is a short one.
 PROGRAM = """
 import os, signal, sys, threading
 import nispcodec, nispcodec.io.load, nispcodec.core.atomic_write
 from nispcodec_cli import main
+from tests.encode.tunings import small
 
 # A shell that starts tests in the background has them ignore Ctrl-C, and so would this program.
 signal.signal(signal.SIGINT, signal.default_int_handler)
@@ -40,9 +42,10 @@ def end():
 def encode_until(mesh, config, progress):
     def heard(update):
         progress(update)
-        if update.stage == place or (place.isdigit() and update.overall >= int(place) / 100):
+        share = 100 * update.step / max(update.steps, 1) if update.network else 0
+        if update.stage == place or (place.isdigit() and share >= int(place)):
             end()
-    return encode(mesh, config, progress=heard)
+    return encode(mesh, config, progress=heard, tuning=small(3000, 300, 1, 100, 30))
 
 def read_until(*arguments):
     if place == "read":
@@ -59,7 +62,9 @@ nispcodec.io.load.READERS[".obj"] = read_until
 os.fsync = sync_until
 main(["encode", *options])
 """
-PLACES = ["read", "charts and hidden walls", "samples", "fit", "10", "40", "70", "90", "write"]
+PROBE = "probe how much there is to learn"
+STAGES = ["charts and hidden walls", "samples", "fit", PROBE, "40", "90", "quantize", "surface"]
+PLACES = ["read", *STAGES, "write"]
 ENDS = [
     *((place, signal.SIGINT) for place in PLACES),
     *((place, signal.SIGTERM) for place in ("read", "40", "write")),
@@ -99,7 +104,7 @@ def test_nothing_is_left_of_an_encode_that_is_ended(
     command += ["--geometry", "field"]
     options = ["--preset", "fast", "--progress", "plain"]
     with subprocess.Popen(
-        [*command, *options], stderr=subprocess.PIPE, text=True, start_new_session=True
+        [*command, *options], stderr=subprocess.PIPE, text=True, start_new_session=True, cwd=ROOT
     ) as run:
         _, said = run.communicate(timeout=300)
     assert run.returncode == {signal.SIGINT: 130, signal.SIGTERM: 143}[number], said

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cached_property
 from typing import Any
 
 from tests.conformance import independent_meta
@@ -10,16 +11,17 @@ CAPS = independent_meta.CAPS
 
 
 class Triangles:
-    """All copies of all mesh parts; `decoder` has the names of the specification's blocks."""
+    """All copies of all mesh parts; `decoder` has the names of the specification's blocks.
+
+    A file is refused for its numbers alone: triangles are placed when they are first asked for.
+    """
 
     def __init__(
         self, decoder: dict[str, Any], parts: list[dict[str, Any]], materials: int
     ) -> None:
         self.decoder = decoder
-        self.corners: list[Any] = []
-        self.uvs: list[Any] = []
-        self.charts: list[int] = []
-        self.sheet: list[bool] = []
+        self.copies: list[tuple[dict[str, Any], dict[str, Any]]] = []
+        self.first_charts: list[int] = []
         self.chart_materials: list[int] = []
         self.chart_has_uv: list[bool] = []
         for part in parts:
@@ -29,21 +31,43 @@ class Triangles:
 
     def add(self, part: dict[str, Any], placement: dict[str, Any]) -> None:
         """One copy, its charts numbered on from those before."""
-        first = len(self.chart_materials)
+        self.copies.append((part, placement))
+        self.first_charts.append(len(self.chart_materials))
         own = placement["materials"]
         self.chart_materials += part["chart_materials"] if own is None else own
         self.chart_has_uv += part["chart_has_uv"]
         assert len(self.chart_materials) <= CAPS["MAX_CHARTS"]
-        places = [self.placed(part, placement, point) for point in part["positions"]]
-        uvs = [dressed(part, placement, uv) for uv in part["uvs"]]
-        order = (0, 2, 1) if placement["mirrored"] else (0, 1, 2)
-        for number, chart in enumerate(part["face_charts"]):
-            three, uv_three = part["faces"][number], part["uv_faces"][number]
-            self.corners.append([places[three[i]] for i in order])
-            has_uv = part["chart_has_uv"][chart]
-            self.uvs.append([uvs[uv_three[i]] if has_uv else [0.0, 0.0] for i in order])
-            self.charts.append(first + chart)
-            self.sheet.append(part["sheet"][number])
+
+    @cached_property
+    def corners(self) -> list[Any]:
+        """The places of each triangle's corners."""
+        found: list[Any] = []
+        for part, placement in self.copies:
+            places = [self.placed(part, placement, point) for point in part["positions"]]
+            found += [[places[three[i]] for i in order(placement)] for three in part["faces"]]
+        return found
+
+    @cached_property
+    def uvs(self) -> list[Any]:
+        """The UVs of each triangle's corners; zeros on charts without."""
+        found: list[Any] = []
+        for part, placement in self.copies:
+            uvs = [dressed(part, placement, uv) for uv in part["uvs"]]
+            for three, chart in zip(part["uv_faces"], part["face_charts"], strict=True):
+                has_uv = part["chart_has_uv"][chart]
+                found.append([uvs[three[i]] if has_uv else [0.0, 0.0] for i in order(placement)])
+        return found
+
+    @cached_property
+    def charts(self) -> list[int]:
+        """The chart of each triangle."""
+        copies = zip(self.copies, self.first_charts, strict=True)
+        return [first + chart for (part, _), first in copies for chart in part["face_charts"]]
+
+    @cached_property
+    def sheet(self) -> list[bool]:
+        """Whether each triangle is of a sheet."""
+        return [flag for part, _ in self.copies for flag in part["sheet"]]
 
     def placed(self, part: dict[str, Any], placement: dict[str, Any], point: Any) -> list[float]:
         """Where a copy has a position of its part."""
@@ -75,6 +99,11 @@ class Triangles:
             sum(share * corner[axis] for share, corner in zip(weights, corners, strict=True))
             for axis in (0, 1)
         ]
+
+
+def order(placement: dict[str, Any]) -> tuple[int, int, int]:
+    """The corners of a copy's triangles, so that these look outwards."""
+    return (0, 2, 1) if placement["mirrored"] else (0, 1, 2)
 
 
 def dressed(part: dict[str, Any], placement: dict[str, Any], uv: Any) -> list[float]:

@@ -13,6 +13,7 @@ import json
 import sys
 import tomllib
 import types
+from functools import cache
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -38,26 +39,36 @@ def changed_reader(mistake: Mistake) -> Any:
 
     Raises ValueError where the text that it changes is not there exactly once.
     """
-    texts = {
-        "spec": "\n".join(spec.blocks("python")),
-        "independent_meta": (HERE / "independent_meta.py").read_text(),
-        "independent_mesh": (HERE / "independent_mesh.py").read_text(),
-        "independent": (HERE / "independent.py").read_text(),
-    }
-    places = [name for name, text in texts.items() for _ in range(text.count(mistake.right))]
+    sources = _sources()
+    places = [name for name, text in sources for _ in range(text.count(mistake.right))]
     if len(places) != 1:
         raise ValueError(f"{mistake.right!r} is in {places or 'no text'}, expected one place")
-    texts[places[0]] = texts[places[0]].replace(mistake.right, mistake.wrong)
     decoder: dict[str, Any] = {}
-    exec(texts["spec"], decoder)
-    meta = types.ModuleType("meta")
-    exec(texts["independent_meta"], vars(meta))
-    mesh = types.ModuleType("mesh")
-    exec(texts["independent_mesh"], vars(mesh))
-    module = types.ModuleType("independent")
-    exec(texts["independent"], vars(module))
+    meta, mesh, module = map(types.ModuleType, ("meta", "mesh", "independent"))
+    names = {
+        "spec": decoder,
+        "independent_meta": vars(meta),
+        "independent_mesh": vars(mesh),
+        "independent": vars(module),
+    }
+    for name, text in sources:
+        exec(_compiled(text.replace(mistake.right, mistake.wrong)), names[name])
     vars(module).update(DECODER=decoder, independent_meta=meta, independent_mesh=mesh)
     return module.Reader
+
+
+@cache
+def _sources() -> list[tuple[str, str]]:
+    """The texts that a reader is made of, each with where its names go."""
+    files = ("independent_meta", "independent_mesh", "independent")
+    blocks = [("spec", block) for block in spec.blocks("python")]
+    return [*blocks, *((name, (HERE / f"{name}.py").read_text()) for name in files)]
+
+
+@cache
+def _compiled(text: str) -> types.CodeType:
+    """The code of a text; a mistake changes one of many."""
+    return compile(text, "<reader>", "exec")
 
 
 def is_caught(reader: Any, stem: str) -> bool:

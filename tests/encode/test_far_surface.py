@@ -12,7 +12,6 @@ import nispcodec
 from nispcodec import EncodeConfig, NispModel, TexturedMesh
 from nispcodec.core.asset import Material
 from nispcodec.core.progress import Progress
-from nispcodec.encode.config import FormConfig
 from nispcodec.encode.far_surface import far_warnings
 from nispcodec.metrics.far_points import FarPoints
 from nispcodec.simplify.errors import Errors
@@ -21,7 +20,7 @@ from tests import tiny
 from tests.encode.thin_things import cage, cards
 from tests.encode.tunings import small
 
-TUNING = replace(small(2000, 100, 1, 60, 30, lambda_=1e-6), forms=FormConfig(measured_faces=20_000))
+TUNING = small(2000, 100, 1, 60, 30, lambda_=1e-6)
 HELD = replace(
     tiny.document(),
     materials=(Material("cage"), Material("foot")),

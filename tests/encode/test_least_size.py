@@ -19,7 +19,7 @@ SHORT = small(3000, 60, 1, 100, 30, lambda_=1e-6)
 
 
 def ball() -> TexturedMesh:
-    return soup(sphere(16))
+    return soup(sphere(8))
 
 
 def encoded(mesh: TexturedMesh, size: float, geometry: str) -> NispModel:

@@ -9,8 +9,7 @@ import pytest
 from nispcodec import EncodeConfig, Progress
 from nispcodec.encode.stages import StageSeconds, with_overall
 from nispcodec.train.config import TrainConfig
-from tests.encode.test_recipe import encode
-from tests.geometry.shapes import box_asset
+from tests.encode.test_recipe import box
 
 
 def overall(updates: list[Progress], config: EncodeConfig | None = None) -> list[float]:
@@ -44,8 +43,7 @@ def rounded(network: str) -> Progress:
     ],
 )
 def test_a_real_encode_goes_from_0_to_nearly_1_and_never_back(config: EncodeConfig) -> None:
-    seen: list[Progress] = []
-    encode(box_asset(), replace(config, geometry="field"), progress=seen.append)
+    _, seen = box(config)
     shares = [each.overall for each in seen]
     assert shares[0] == 0
     assert shares == sorted(shares)

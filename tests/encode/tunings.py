@@ -6,7 +6,7 @@ import math
 from dataclasses import replace
 
 from nispcodec.dataset.config import SamplingConfig
-from nispcodec.encode.config import Tuning
+from nispcodec.encode.config import FormConfig, Tuning
 from nispcodec.train.config import (
     LoopConfig,
     PaperConfig,
@@ -26,7 +26,10 @@ def small(
     probe_steps: int,
     lambda_: float = 0,
 ) -> Tuning:
-    """Few samples of each kind, so many steps for every preset; lambda of all networks."""
+    """Few samples of each kind, so many steps for every preset; lambda of all networks.
+
+    Errors are measured on a coarse surface of the networks: a fine one takes longer than such fits.
+    """
     default = TrainConfig()
     budget = TrainingBudget(steps, 0.6, minings, mine_every)
     networks = {
@@ -43,4 +46,5 @@ def small(
         paper=PaperConfig(steps=60),
     )
     counts = {f"{name}_count": samples for name in COUNTS}
-    return Tuning(sampling=SamplingConfig(**counts), training=training)
+    forms = FormConfig(measured_faces=20_000)
+    return Tuning(sampling=SamplingConfig(**counts), training=training, forms=forms)

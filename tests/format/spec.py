@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -14,6 +15,7 @@ def blocks(language: str) -> list[str]:
     return re.findall(rf"```{language}\n(.*?)```", TEXT, re.DOTALL)
 
 
+@cache
 def table_after(heading: str) -> list[list[str]]:
     """The rows of the first table after a line with this text, header and rule left out."""
     start = TEXT.index(heading)

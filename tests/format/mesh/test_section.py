@@ -85,9 +85,11 @@ def test_placements_and_their_materials_are_bounded() -> None:
     copies = (Placement(materials=np.zeros(1, np.int32)),) * 4096
     data = encode((replace(box(), placements=copies),))
     assert len(decode(data)[0].placements) == 4096
-    one = part(np.eye(3), np.array([[0, 1, 2]]), placements=copies)
+    # Triangles apart are charts apart, each of which has a material at every place.
+    corners = np.random.default_rng(0).integers(0, 1000, (3 * 64, 3))
+    apart = part(corners, np.arange(3 * 64).reshape(-1, 3), placements=copies)
     with pytest.raises(FormatError, match="field placement_materials"):
-        encode((one,) * 32)
+        encode((apart,))
 
 
 def test_faces_of_all_copies_are_bounded() -> None:
