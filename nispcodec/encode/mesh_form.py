@@ -20,8 +20,10 @@ from nispcodec.extract.meshing import default_resolution, textured_mesh
 from nispcodec.format import mesh
 from nispcodec.geometry.analysis import Analysis
 from nispcodec.geometry.shown import Shown, shown
+from nispcodec.metrics.faulty_points import FaultyPoints
 from nispcodec.metrics.paint import Paint
 from nispcodec.simplify.descent import least_loss
+from nispcodec.simplify.discolored import Discolored
 from nispcodec.simplify.errors import Counted, Errors
 from nispcodec.simplify.ladder import Candidate, Simplifier
 from nispcodec.simplify.search import best_for
@@ -104,6 +106,11 @@ class MeshForm:
         """The mean distance to the original, and the mean UV error, of each part of a document."""
         original, samples = self.simplifier.original, self._config.ladder.samples
         return tuple(part_errors(document, self._decoded(document), original, samples))
+
+    def discolored(self, document: Document) -> FaultyPoints:
+        """Where the surface that a document decodes to has other colors than the original's."""
+        config = self._config.ladder.discolored
+        return Discolored.of(self.simplifier.original, self._decoded(document), config).faulty
 
     def _decoded(self, document: Document) -> TexturedMesh:
         """The decoded mesh, positions in the normalized frame; the last one is kept."""

@@ -14,7 +14,7 @@ from nispcodec.core.progress import Listener, Progress, silent
 from nispcodec.encode.appearance import appearance
 from nispcodec.encode.choice import Choice, Chosen, Loss, Made
 from nispcodec.encode.config import EncodeConfig, Tuning
-from nispcodec.encode.far_surface import far_warnings
+from nispcodec.encode.faults import fault_warnings
 from nispcodec.encode.field_form import FieldForm
 from nispcodec.encode.mesh_form import MeshForm
 from nispcodec.encode.report import measured, unmeasured
@@ -111,10 +111,11 @@ def _finished(
     tuning: Tuning,
     progress: Listener,
 ) -> NispModel:
-    """The model, after its owner was told what its parts are off, and warned of made-up surface."""
+    """The model, after its owner was told what its parts are off, and warned of their faults."""
     notable = tuning.forms.notable_far
     better = tuning.training.better_than(config.preset)
-    for warning in far_warnings(chosen.document, chosen.errors, better, notable):
+    discolored = form.discolored(chosen.document)
+    for warning in fault_warnings(chosen.document, chosen.errors, discolored, better, notable):
         progress(Progress(stage="surface", warning=f"{name}: {warning}"))
     progress(Progress(stage="surface", part_errors=form.part_errors(chosen.document)))
     return NispModel(replace(chosen.document, info=info))

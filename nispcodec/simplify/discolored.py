@@ -10,6 +10,7 @@ from scipy.spatial import cKDTree
 
 from nispcodec.core.arrays import BoolArray, Float64Array
 from nispcodec.core.asset import TexturedMesh
+from nispcodec.metrics.faulty_points import FaultyPoints
 from nispcodec.metrics.surface import Surface
 from nispcodec.simplify.config import DiscoloredConfig
 from nispcodec.simplify.errors import Original
@@ -42,6 +43,11 @@ class Discolored:
     def share(self) -> float:
         """The part of the points."""
         return float(self.points.mean())
+
+    @property
+    def faulty(self) -> FaultyPoints:
+        """The points."""
+        return FaultyPoints.of(self.original.surface.mesh, self.original.points, self.points)
 
     @cached_property
     def corners(self) -> Float64Array:

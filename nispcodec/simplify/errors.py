@@ -12,7 +12,7 @@ from nispcodec.core.arrays import BoolArray
 from nispcodec.core.asset import Material, TexturedMesh
 from nispcodec.core.errors import MeshError
 from nispcodec.core.mesh_part import MeshPart
-from nispcodec.metrics.far_points import FAR, FarPoints
+from nispcodec.metrics.faulty_points import FAR, FaultyPoints
 from nispcodec.metrics.geometry import Matches
 from nispcodec.metrics.paint import Paint
 from nispcodec.metrics.sides import sides_of
@@ -39,8 +39,8 @@ class Errors:
     uv: float
     uv_median: float
     color: float = 0.0
-    made_up: FarPoints = field(default_factory=FarPoints, compare=False)
-    lost: FarPoints = field(default_factory=FarPoints, compare=False)
+    made_up: FaultyPoints = field(default_factory=FaultyPoints, compare=False)
+    lost: FaultyPoints = field(default_factory=FaultyPoints, compare=False)
     far_part: float = 0.0
 
     def within(self, distance: float, uv: float) -> bool:
@@ -155,8 +155,8 @@ class Original:
             uv=max((float(each.mean()) for each in seen), default=0.0),
             uv_median=max((float(np.median(each)) for each in seen), default=0.0),
             color=self._color(other, directions),
-            made_up=FarPoints.of(decoded, points, directions[1].distances),
-            lost=FarPoints.of(self.surface.mesh, self.points, there.distances),
+            made_up=FaultyPoints.of(decoded, points, directions[1].distances > FAR),
+            lost=FaultyPoints.of(self.surface.mesh, self.points, there.distances > FAR),
             far_part=distance - near,
         )
 

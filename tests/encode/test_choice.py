@@ -20,7 +20,7 @@ from nispcodec.encode.choice import Choice
 from nispcodec.encode.config import FormConfig, Tuning
 from nispcodec.encode.mesh_form import coded_bytes
 from nispcodec.format import own_bytes, pack
-from nispcodec.metrics.far_points import FarPoints
+from nispcodec.metrics.faulty_points import FaultyPoints
 from nispcodec.simplify.errors import Errors
 from tests import tiny
 from tests.infer.parts import cube, part_of
@@ -129,7 +129,7 @@ def test_triangles_are_set_against_a_field_at_its_own_distance() -> None:
     assert form.asked == [("about", OFF.distance, 0.0)]
 
 
-LOST = FarPoints(1000, np.zeros((50, 3)), np.zeros(50, np.int32))
+LOST = FaultyPoints(1000, np.zeros((50, 3)), np.zeros(50, np.int32))
 
 
 @pytest.mark.parametrize("errors", [replace(OFF, color=0.05), replace(OFF, lost=LOST)])
@@ -160,7 +160,7 @@ def test_the_best_preset_takes_more_bytes_for_triangles_that_are_near() -> None:
 
 
 def test_triangles_are_worth_more_bytes_where_the_field_makes_up_surface() -> None:
-    webbed = replace(OFF, made_up=FarPoints(1000, np.zeros((50, 3)), np.zeros(50, np.int32)))
+    webbed = replace(OFF, made_up=FaultyPoints(1000, np.zeros((50, 3)), np.zeros(50, np.int32)))
     dear, form = Tuning(forms=FormConfig(most_worth=1e3)), Told(10.0 * SIZE, about=candidate())
     taken = choice(form, tuning=dear).after_fit(FIELD, webbed)
     assert taken.document.meshes == (PART,)
@@ -174,7 +174,7 @@ def test_triangles_are_worth_more_bytes_where_the_field_makes_up_surface() -> No
 
 
 def test_where_triangles_as_near_make_up_surface_too_nearer_ones_are_taken() -> None:
-    webbed = replace(OFF, made_up=FarPoints(1000, np.zeros((50, 3)), np.zeros(50, np.int32)))
+    webbed = replace(OFF, made_up=FaultyPoints(1000, np.zeros((50, 3)), np.zeros(50, np.int32)))
     for about, asked in ((candidate(), ["about"]), (candidate(webbed), ["about", "best"])):
         form = Told(10.0 * SIZE, about=about, best=candidate())
         dear = Tuning(forms=FormConfig(most_worth=1e3))

@@ -1,7 +1,9 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
+import numpy as np
 import pytest
 
 from nispcodec.core.asset import Material
@@ -85,6 +87,19 @@ def test_errors_of_a_document_are_those_of_what_it_decodes_to(ball: MeshForm) ->
     frame = Frame((0.0, 0.0, 0.0), 1.0)
     document = Document(frame, (Material(),), (), meshes=best.parts)
     assert ball.errors(document).distance == pytest.approx(best.errors.distance, rel=0.05)
+
+
+def test_materials_that_changed_places_are_another_color() -> None:
+    one, other = Material("white"), Material("red", base_color=(1.0, 0.0, 0.0, 1.0))
+    ball = soup(sphere(16))
+    above = (ball.positions[ball.faces][..., 2].mean(axis=1) > 0).astype(np.int32)
+    asset = replace(ball, materials=(one, other), face_materials=above)
+    form = MeshForm(analyze(asset), 0, CONFIG, silent)
+    parts, frame = form.best(4e-3, math.inf).parts, Frame((0.0, 0.0, 0.0), 1.0)
+    swapped = tuple(replace(each, chart_materials=1 - each.chart_materials) for each in parts)
+    right, wrong = (Document(frame, (one, other), (), meshes=each) for each in (parts, swapped))
+    assert form.discolored(right).share == 0
+    assert form.discolored(wrong).share > 0.9
 
 
 def test_copies_are_held_once() -> None:

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from nispcodec.metrics.compare import Reference
-from nispcodec.metrics.far_points import FarPoints
+from nispcodec.metrics.faulty_points import FaultyPoints
 from nispcodec.simplify.collapse import collapsed
 from nispcodec.simplify.errors import Counted, Errors, Original, mesh_of
 from nispcodec.simplify.quantize import quantized
@@ -86,7 +86,7 @@ def test_what_is_missing_is_lost_and_what_is_too_much_is_made_up() -> None:
 
 
 def test_errors_of_two_parts_are_weighted_by_their_areas() -> None:
-    far = FarPoints(1000, np.zeros((10, 3)), np.zeros(10, np.int32))
+    far = FaultyPoints(1000, np.zeros((10, 3)), np.zeros(10, np.int32))
     one, other = Errors(1e-3, 5e-3, 2e-3, 1e-3, 0.3, lost=far), Errors(3e-3, 4e-3, 6e-3, 5e-3, 0.1)
     both = one.beside(other, 0.25)
     means = both.distance, both.uv, both.uv_median

@@ -12,8 +12,8 @@ import nispcodec
 from nispcodec import EncodeConfig, NispModel, TexturedMesh
 from nispcodec.core.asset import Material
 from nispcodec.core.progress import Progress
-from nispcodec.encode.far_surface import far_warnings
-from nispcodec.metrics.far_points import FarPoints
+from nispcodec.encode.faults import fault_warnings
+from nispcodec.metrics.faulty_points import FaultyPoints
 from nispcodec.simplify.errors import Errors
 from nispcodec.train.config import TrainConfig
 from tests import tiny
@@ -28,14 +28,17 @@ HELD = replace(
 )
 
 
-def far(count: int, at: tuple[float, float, float] = (0.5, 0.0, 0.0)) -> FarPoints:
+def far(count: int, at: tuple[float, float, float] = (0.5, 0.0, 0.0)) -> FaultyPoints:
     """So many of 1,000 points, along a line of 0.2 about a place."""
     along = np.linspace(-0.1, 0.1, count)[:, None] * [0.0, 0.0, 1.0]
-    return FarPoints(1000, np.asarray(at) + along, np.ones(count, np.int32))
+    return FaultyPoints(1000, np.asarray(at) + along, np.ones(count, np.int32))
 
 
-def warnings(better: str | None = "balanced", **points: Any) -> list[str]:
-    return list(far_warnings(HELD, Errors(0.0, 0.0, 0.0, 0.0, **points), better, 5e-4))
+def warnings(
+    better: str | None = "balanced", discolored: FaultyPoints | None = None, **points: Any
+) -> list[str]:
+    errors, none = Errors(0.0, 0.0, 0.0, 0.0, **points), FaultyPoints()
+    return list(fault_warnings(HELD, errors, discolored or none, better, 5e-4))
 
 
 def test_a_warning_names_share_place_size_material_and_what_to_do() -> None:
@@ -47,10 +50,12 @@ def test_a_warning_names_share_place_size_material_and_what_to_do() -> None:
     (lost,) = warnings(None, lost=far(1000))
     assert "100 % of the original's surface is lost" in lost
     assert "--preset" not in lost
+    (told,) = warnings(discolored=far(2))
+    assert told.startswith("0.2 % of the original's surface comes out in another color; most about")
 
 
 def test_little_of_it_is_no_warning() -> None:
-    assert warnings(made_up=FarPoints(2001, np.zeros((1, 3)), np.zeros(1, np.int32))) == []
+    assert warnings(made_up=FaultyPoints(2001, np.zeros((1, 3)), np.zeros(1, np.int32))) == []
 
 
 def test_a_better_preset_is_the_next_one() -> None:

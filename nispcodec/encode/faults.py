@@ -1,37 +1,36 @@
-"""Warnings of made-up and of lost surface, with place and size."""
+"""Warnings of surface that is made up or lost, and of colors that are lost, with place and size."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 
 from nispcodec.core.document import Document
-from nispcodec.metrics.far_points import FAR, FarPoints, Place
+from nispcodec.metrics.faulty_points import FAR, FaultyPoints, Place
 from nispcodec.simplify.errors import Errors
 
 
-def far_warnings(
-    document: Document, errors: Errors, better: str | None, notable: float
+def fault_warnings(
+    document: Document,
+    errors: Errors,
+    discolored: FaultyPoints,
+    better: str | None,
+    notable: float,
 ) -> Iterator[str]:
-    """A sentence for made-up surface and one for lost parts, each where its share is notable.
+    """A sentence for made-up surface, one for lost parts, one for colors, where these are notable.
 
     With the place where most of it is and how large that is, in the asset's units. `better` is a
     preset that learns longer.
     """
-    advice = _advice(document, better)
-    for far, what in (
-        (errors.made_up, "of the decoded surface is made up: nothing of the original"),
-        (errors.lost, "of the original's surface is lost: nothing of the decoded surface"),
+    near = f"is within {FAR * document.frame.radius:.3g} of it"
+    for faulty, what in (
+        (errors.made_up, f"decoded surface is made up: nothing of the original {near}"),
+        (errors.lost, f"original's surface is lost: nothing of the decoded surface {near}"),
+        (discolored, "original's surface comes out in another color"),
     ):
-        if far.share > notable:
-            limit = FAR * document.frame.radius
-            yield (
-                f"{_percent(far)} {what} is within {limit:.3g} of it; "
-                f"most {_place(document, far.largest)}. {advice}"
-            )
-
-
-def _percent(far: FarPoints) -> str:
-    return f"{100 * far.share:.3g} %"
+        if faulty.share > notable:
+            place = _place(document, faulty.largest)
+            share, advice = f"{100 * faulty.share:.3g} %", _advice(document, better)
+            yield f"{share} of the {what}; most {place}. {advice}"
 
 
 def _place(document: Document, place: Place) -> str:
