@@ -102,12 +102,18 @@ function halfToNumber(bits) {
   return sign * (exponent ? (1024 + fraction) * 2 ** (exponent - 25) : fraction * 2 ** -24);
 }
 
-/** What a byte does to a CRC-32; from 256, 512 and 768 on, with so many bytes of zeros behind. */
-const CRC_TABLE = new Uint32Array(1024);
-for (let i = 0; i < 1024; i++) {
+/** What a byte does to a CRC-32; from 256 k on, with k bytes of zeros behind. */
+const CRC_TABLE = new Uint32Array(2048);
+for (let i = 0; i < 2048; i++) {
   let value = i < 256 ? i : CRC_TABLE[i - 256];
   for (let bit = 0; bit < 8; bit++) value = value & 1 ? 0xedb88320 ^ (value >>> 1) : value >>> 1;
   CRC_TABLE[i] = value;
+}
+
+/** What four bytes do, little-endian, with 0 or 4 bytes of zeros behind. @param {number} word @param {number} zeros times 256 */
+function crcOf(word, zeros) {
+  const [a, b, c, d] = [word & 255, (word >> 8) & 255, (word >> 16) & 255, word >>> 24];
+  return CRC_TABLE[zeros + 768 + a] ^ CRC_TABLE[zeros + 512 + b] ^ CRC_TABLE[zeros + 256 + c] ^ CRC_TABLE[zeros + d];
 }
 
 /**
@@ -119,11 +125,8 @@ export function crc32(...parts) {
   for (const part of parts) {
     const view = new DataView(part.buffer, part.byteOffset, part.length);
     let i = 0;
-    // Four at once take half of the time.
-    for (; i + 4 <= part.length; i += 4) {
-      crc ^= view.getInt32(i, true);
-      crc = CRC_TABLE[768 + (crc & 255)] ^ CRC_TABLE[512 + ((crc >> 8) & 255)] ^ CRC_TABLE[256 + ((crc >> 16) & 255)] ^ CRC_TABLE[crc >>> 24];
-    }
+    // Eight at once take less than half of the time.
+    for (; i + 8 <= part.length; i += 8) crc = crcOf(crc ^ view.getInt32(i, true), 1024) ^ crcOf(view.getInt32(i + 4, true), 0);
     for (; i < part.length; i++) crc = CRC_TABLE[(crc ^ part[i]) & 255] ^ (crc >>> 8);
   }
   return (crc ^ -1) >>> 0;
