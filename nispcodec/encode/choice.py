@@ -87,8 +87,22 @@ class Choice:
 
     @property
     def settled(self) -> bool:
-        """Whether triangles of the target size are as good as exact: networks need no look."""
-        return self._open and bool(self._config.target_size) and self._surely_nearer(0.0)
+        """Whether triangles are better than networks can be, which then need no look.
+
+        Those of the target size, as good as exact; or so few that no networks ever cost as little.
+        """
+        if not self._open or self._config.target_error or self._loss:
+            return False
+        if self._config.target_size:
+            return self._surely_nearer(0.0)
+        forms = self._forms
+        if self._form.least_cost > forms.surely_best:
+            return False
+        found = self._wanted()
+        return (
+            forms.is_sound(found.errors)
+            and forms.cost(found.size, found.errors) <= forms.surely_best
+        )
 
     def _surely_nearer(self, distance: float) -> bool:
         """Whether triangles of the target size need not be set against networks.
@@ -271,10 +285,15 @@ class Choice:
                 )
             return found
         if not config.target_size:
-            return self._form.best(self._nearest, self._worth * self._field_bytes or math.inf)
+            return self._best
         if self._triangle_bytes > config.target_size:
             raise TargetSizeError(self._triangle_bytes, config.target_size)
         return self._of_target_size
+
+    @cached_property
+    def _best(self) -> Candidate:
+        """The best triangles, where no target is set."""
+        return self._form.best(self._nearest, self._worth * self._field_bytes or math.inf)
 
     @property
     def _nearest(self) -> float:

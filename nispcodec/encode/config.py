@@ -140,6 +140,8 @@ class FormConfig:
                      estimate of what a fit will reach may be that far off ...
     surely_smaller_fine   ... but for assets of fine detail, whose networks are the largest there
                      are: two such fits ended within an eighth of what the probe said
+    surely_best      cost of triangles from which down networks are not looked at: of the eleven
+                     assets no networks cost less than 4.8
     surely_larger    share of them from which on networks are
     measured_faces   of the surface of a field at most, when its errors are measured: what a decode
                      spends on thin walls, which a coarser grid tears
@@ -180,6 +182,7 @@ class FormConfig:
     coarseness: tuple[float, ...] = (4.0, 2.0, 1.0)
     surely_smaller: float = 0.5
     surely_smaller_fine: float = 0.8
+    surely_best: float = 4.5
     surely_larger: float = 1.4
     measured_faces: float = 500_000
     fitted: float = 0.35

@@ -132,6 +132,15 @@ class MeshForm:
         most_faces = self._config.measured_faces
         return default_resolution(field.sdf, field.half_thickness, most_faces=most_faces)
 
+    @property
+    def least_cost(self) -> float:
+        """The least cost of all faces, were they as coarse as can be and exact all the same."""
+        return self._config.foreseen_cost(self._least_bytes, 0.0)
+
+    @property
+    def _least_bytes(self) -> float:
+        return self._config.least_bytes_per_face * len(self.simplifier.source.triangles)
+
     def estimate(self, distance: float, few: float, many: float) -> float:
         """About how many bytes the asset takes at a mean distance.
 
@@ -203,7 +212,7 @@ class MeshForm:
     def _whole(self, most_bytes: float) -> Iterator[Candidate]:
         """Every face, rounded to smaller and smaller errors, up to so many bytes."""
         everything = len(self.simplifier.source.triangles)
-        if everything * self._config.least_bytes_per_face > most_bytes:
+        if self._least_bytes > most_bytes:
             return
         uv_bits = self.simplifier.uv_bits_for(self._config.negligible_uv)
         for coarseness in self._config.coarseness:

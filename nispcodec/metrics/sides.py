@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -13,6 +14,9 @@ PROBE = 2e-3
 # Half the time of libigl's default of 2; of 200,000 probes around a helmet of 82 bodies, one moved
 # across 1/2.
 ACCURACY = 1.5
+
+Winding = Callable[[Float64Array], Float64Array]
+"""The winding numbers (n,) at points (n, 3)."""
 
 
 @dataclass(frozen=True)
@@ -31,22 +35,24 @@ class Sides:
         return ~self.hidden
 
 
-def sides_of(surface: Surface, points: SurfacePoints, corners: Float64Array | None = None) -> Sides:
+def sides_of(surface: Surface, points: SurfacePoints, winding: Winding | None = None) -> Sides:
     """The sides of points on a surface, told by the winding number PROBE off along the normal.
 
     Outside is |winding number| <= 1/2 (Jacobson et al. 2013). Hidden faces, inside other bodies,
-    cannot be held by a signed distance field. `corners` (m, 3, 3) are those of the faces that wind,
-    where they are more than the surface's.
+    cannot be held by a signed distance field. `winding` tells the number where other faces wind
+    too; None: that of the surface, by libigl.
     """
-    import igl
-
     offset = PROBE * surface.normals[points.faces]
     probes = np.concatenate([points.positions + offset, points.positions - offset])
-    if corners is None:
-        corners = surface.positions[surface.mesh.faces]
-    vertices = np.ascontiguousarray(corners.reshape(-1, 3))
-    tree = igl.FastWindingNumberBVH()
-    tree.init(vertices, np.arange(len(vertices), dtype=np.int64).reshape(-1, 3))
-    inside = np.abs(tree.winding_number(probes, ACCURACY)) > 0.5
+    inside = np.abs((winding or _winding_of(surface))(probes)) > 0.5
     above, below = np.split(inside, 2)
     return Sides(hidden=above & below, sheet=~above & ~below)
+
+
+def _winding_of(surface: Surface) -> Winding:
+    import igl
+
+    vertices = np.ascontiguousarray(surface.positions[surface.mesh.faces].reshape(-1, 3))
+    tree = igl.FastWindingNumberBVH()
+    tree.init(vertices, np.arange(len(vertices), dtype=np.int64).reshape(-1, 3))
+    return lambda points: tree.winding_number(points, ACCURACY)

@@ -8,10 +8,12 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from nispcodec.core.arrays import BoolArray
+from nispcodec.core.arrays import BoolArray, Float64Array
 from nispcodec.core.asset import Material, TexturedMesh
 from nispcodec.core.errors import MeshError
 from nispcodec.core.mesh_part import MeshPart
+from nispcodec.geometry.config import WindingConfig
+from nispcodec.geometry.winding import Winding
 from nispcodec.metrics.faulty_points import FAR, FaultyPoints
 from nispcodec.metrics.geometry import Matches
 from nispcodec.metrics.paint import Paint
@@ -125,7 +127,7 @@ class Original:
         points = surface.sample(samples, np.random.default_rng([seed, 0]))
         if counted is not None and counted.held[points.faces].any():
             points = points[counted.held[points.faces]]
-        outer = sides_of(surface, points, tree.corners).outer
+        outer = _outer(surface, points, tree.corners)
         if not outer.any():
             outer[:] = True
         seen = outer if counted is None else outer | counted.inner[points.faces]
@@ -141,7 +143,7 @@ class Original:
             points = other.sample(len(self.points), np.random.default_rng([self.seed, 1]))
         except MeshError:
             return Errors(np.inf, np.inf, np.inf, np.inf)
-        outer = sides_of(other, points).outer
+        outer = _outer(other, points, other.positions[decoded.faces])
         points = points[outer] if outer.any() else points
         there = self.matches(other)
         directions = [there[self.outer], Matches(self._closest(points), points)]
@@ -187,6 +189,12 @@ class Original:
         faces = self.surface.facing(hits.faces, hits.positions - points.positions)
         weights = self.surface.weights(faces, hits.positions)
         return SurfacePoints(faces, weights, hits.positions)
+
+
+def _outer(surface: Surface, points: SurfacePoints, corners: Float64Array) -> BoolArray:
+    """(n,): the points that are not hidden by triangles (m, 3, 3)."""
+    winding = Winding(corners, WindingConfig(), often=2 * len(points) > len(corners))
+    return sides_of(surface, points, winding.about).outer
 
 
 def mesh_of(part: MeshPart) -> TexturedMesh:

@@ -36,8 +36,8 @@ OFF = Errors(0.01, 0.02, 0.01, 0.005)
 class Told:
     """In place of a MeshForm: what it says, and what it was asked."""
 
-    def __init__(self, estimate: float = 0.0, **found: Any) -> None:
-        self.bytes, self.found = estimate, found
+    def __init__(self, estimate: float = 0.0, least_cost: float = 100.0, **found: Any) -> None:
+        self.bytes, self.found, self.least_cost = estimate, found, least_cost
         self.asked: list[tuple[str, float, float]] = []
 
     def estimate(self, distance: float, few: float, many: float) -> float:
@@ -220,6 +220,38 @@ def test_to_a_size_nothing_is_fitted_where_triangles_are_surely_nearer(
     assert asked.wants_field(size, 1e-3) is fitted
     assert asked.settled is not fitted
     assert not choice(Told(of_size=near, fewest=near), geometry="field", target_size=size).settled
+
+
+@pytest.mark.parametrize(
+    ("errors", "size", "settled"),
+    [
+        (EXACT, 2000, True),
+        (EXACT, 8000, False),
+        (replace(EXACT, distance=1e-3), 2000, False),
+        (replace(EXACT, made_up=FaultyPoints(1000, np.zeros((1, 3)))), 2000, False),
+    ],
+)
+def test_nothing_is_fitted_where_triangles_are_surely_better(
+    errors: Errors, size: int, settled: bool
+) -> None:
+    few = SimpleNamespace(parts=(PART,), errors=errors, size=size)
+    form = Told(least_cost=4.0, best=few)
+    found = choice(form)
+    assert found.settled is settled
+    assert found.triangles().document.meshes == (PART,)
+    assert [name for name, *_ in form.asked] == ["best"]
+
+
+@pytest.mark.parametrize("options", [{"geometry": "field"}, {"target_error": 1e-3}])
+def test_what_is_asked_for_is_not_settled(options: dict[str, Any]) -> None:
+    few = SimpleNamespace(parts=(PART,), errors=EXACT, size=100)
+    assert not choice(Told(least_cost=4.0, best=few), **options).settled
+
+
+def test_many_faces_are_not_looked_at_early() -> None:
+    form = Told(least_cost=4.6)
+    assert not choice(form).settled
+    assert form.asked == []
 
 
 def test_triangles_over_the_size_are_not_taken_however_near() -> None:
