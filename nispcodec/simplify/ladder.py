@@ -55,7 +55,7 @@ class Candidate:
 
 @dataclass(frozen=True)
 class Simplifier:
-    """Makes candidates of one source; what was fitted once is kept.
+    """Makes candidates of one source; what was made once is kept.
 
     source    without copies
     coded     the bytes of parts
@@ -69,6 +69,7 @@ class Simplifier:
     config: LadderConfig = LadderConfig()
     seed: int = 0
     _fitted: dict[int, Triangles] = field(default_factory=dict)
+    _made: dict[tuple[int, int, int], Candidate] = field(default_factory=dict)
 
     @staticmethod
     def of(
@@ -123,6 +124,12 @@ class Simplifier:
 
     def candidate(self, faces: int, bits: int, uv_bits: int) -> Candidate:
         """About so many triangles, rounded, coded and measured."""
+        asked = faces, bits, uv_bits
+        if asked not in self._made:
+            self._made[asked] = self._rounded(*asked)
+        return self._made[asked]
+
+    def _rounded(self, faces: int, bits: int, uv_bits: int) -> Candidate:
         triangles = self.fitted(faces)
         if faces < len(self.source.triangles):
             # UVs are fitted to the places that rounding leaves.

@@ -21,6 +21,7 @@ _TOP = 1 << 24
 _FULL = (1 << 32) - 1
 LIMIT = 255
 RATES = tuple(int(65536 / (n + 2)) for n in range(LIMIT + 1))
+NEXT = tuple(min(n + 1, LIMIT) for n in range(LIMIT + 1))
 LEARNING = 10
 START = 20000
 PRIORS = table()
@@ -57,18 +58,23 @@ class BinaryCoder(ABC):
             weights = self._weights[slot] = [START, START, START]
         one, two, three = STRETCH[first[0] >> 4], STRETCH[second[0] >> 4], STRETCH[third[0] >> 4]
         mixed = (weights[0] * one + weights[1] * two + weights[2] * three) >> 16
-        probability = SQUASH[min(max(mixed, -2047), 2047) + 2048]
+        probability = SQUASH[2048 + (-2047 if mixed < -2047 else 2047 if mixed > 2047 else mixed)]
         bit = self._code(value, probability)
         target = 65535 if bit else 0
         miss = (target - probability) * LEARNING
         weights[0] += (one * miss + 32768) >> 16
         weights[1] += (two * miss + 32768) >> 16
         weights[2] += (three * miss + 32768) >> 16
-        for counter in (first, second, third):
-            seen = counter[1]
-            counter[0] += ((target - counter[0]) * RATES[seen]) >> 16
-            if seen < LIMIT:
-                counter[1] = seen + 1
+        # A loop over the three would take a tenth of the time of all coding.
+        likely, seen = first
+        first[0] = likely + ((target - likely) * RATES[seen] >> 16)
+        first[1] = NEXT[seen]
+        likely, seen = second
+        second[0] = likely + ((target - likely) * RATES[seen] >> 16)
+        second[1] = NEXT[seen]
+        likely, seen = third
+        third[0] = likely + ((target - likely) * RATES[seen] >> 16)
+        third[1] = NEXT[seen]
         return bit
 
     def bits(self, value: int, count: int) -> int:
