@@ -18,7 +18,7 @@ class Progress:
 
     network       "sdf", "chart" or "uv"; "" for a stage of the whole encode
     stage         what is being done, in a word or two
-    step, steps   how far it is
+    step, steps   how far it is; no `steps` where nobody knows how many there will be
     loss          training loss, smoothed; NaN, as the next two, where nothing is known
     error         held-out error: sdf mean distance (normalized), chart share of wrong labels,
                   uv mean distance in the network's [0, 1]^2 given the true chart

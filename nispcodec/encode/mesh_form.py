@@ -65,7 +65,7 @@ class MeshForm:
         self, analysis: Analysis, seed: int, config: FormConfig, progress: Listener
     ) -> None:
         self._analysis, self._seed, self._config = analysis, seed, config
-        self._progress = progress
+        self._progress, self._told = progress, Progress(stage="triangles")
         self._last: tuple[Document, TexturedMesh] | None = None
 
     @cached_property
@@ -73,7 +73,8 @@ class MeshForm:
         """The maker of candidates, from the faces that can be seen."""
         triangles, counted = self._triangles
         config, seed = self._config.ladder, self._seed
-        return Simplifier.of(triangles, coded_bytes, config, seed, counted, self._paint)
+        told = self._tell_candidate
+        return Simplifier.of(triangles, coded_bytes, config, seed, counted, self._paint, told)
 
     @cached_property
     def _paint(self) -> Paint:
@@ -97,10 +98,21 @@ class MeshForm:
         per_face = config.bytes_per_face
         return Rungs(self.simplifier, config.growth, per_face, slope, config.estimate_trials)
 
+    def _begin(self, stage: str, steps: int = 0) -> None:
+        """Tell of a stage, whose steps are the candidates made; 0: nobody knows how many."""
+        self._told = Progress(stage=stage, steps=steps)
+        self._progress(self._told)
+
+    def _tell_candidate(self) -> None:
+        self._told = replace(self._told, step=self._told.step + 1)
+        self._progress(self._told)
+
     def errors(self, document: Document) -> Errors:
         """How far the surface that a document decodes to is off."""
-        self._progress(Progress(stage="surface"))
-        return self.simplifier.original.errors(self._decoded(document))
+        self._progress(Progress(stage="surface", step=0, steps=2))
+        found = self.simplifier.original.errors(self._decoded(document))
+        self._progress(Progress(stage="surface", step=1, steps=2))
+        return found
 
     def part_errors(self, document: Document) -> tuple[tuple[float, float], ...]:
         """The mean distance to the original, and the mean UV error, of each part of a document."""
@@ -146,7 +158,7 @@ class MeshForm:
 
         Most exactly between `few` and `many`.
         """
-        self._progress(Progress(stage="triangles"))
+        self._begin("probe triangles", self._config.estimate_trials)
         return self._rungs.bytes_at(distance, few, many)
 
     def best(self, most_distance: float, most_bytes: float) -> Candidate:
@@ -155,7 +167,7 @@ class MeshForm:
         Of those that make up and lose no notable surface, if any; of these, of those within the
         limit of the distance, if any; and of these of those within the limit of the bytes.
         """
-        self._progress(Progress(stage="triangles"))
+        self._begin("triangles")
         found = [*self._rungs.rising(most_bytes, most_distance), *self._whole(most_bytes)]
         sound = [each for each in found if self._config.is_sound(each.errors)] or found
         near = [each for each in sound if each.errors.distance <= most_distance] or sound
@@ -165,7 +177,7 @@ class MeshForm:
 
     def best_beside(self, rest: Rest) -> Candidate:
         """The candidate that is best for an asset of which networks hold the rest. As `best`."""
-        self._progress(Progress(stage="triangles"))
+        self._begin("triangles")
         config = self._config
 
         def cost(candidate: Candidate) -> Cost:
@@ -177,7 +189,7 @@ class MeshForm:
 
     def about(self, distance: float) -> Candidate:
         """A candidate whose mean distance is about this."""
-        self._progress(Progress(stage="triangles"))
+        self._begin("triangles")
         found = self._rungs.about(distance)
         return self._refined(found, max(distance, found.errors.distance), math.inf)
 
@@ -224,17 +236,17 @@ class MeshForm:
 
     def within(self, distance: float, uv: float) -> Candidate | None:
         """The fewest bytes at these errors at most; None where there is no such candidate."""
-        self._progress(Progress(stage="triangles"))
+        self._begin("triangles")
         return best_for(self.simplifier, distance, uv)
 
     def of_size(self, most_bytes: float) -> Candidate:
         """The nearest candidate found of at most so many bytes; the smallest where none is."""
-        self._progress(Progress(stage="triangles"))
+        self._begin("triangles")
         return nearest_of_size(self.simplifier, most_bytes, self._config)
 
     def of_least_loss(self, loss: Callable[[Candidate], float]) -> Candidate:
         """The candidate that loses least, of those a search looks at: by pictures, say."""
-        self._progress(Progress(stage="triangles"))
+        self._begin("triangles")
         return least_loss(self.simplifier, loss, self._config.descent)
 
     def fewest(self) -> Candidate:

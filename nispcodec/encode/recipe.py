@@ -117,5 +117,6 @@ def _finished(
     discolored = form.discolored(chosen.document)
     for warning in fault_warnings(chosen.document, chosen.errors, discolored, better, notable):
         progress(Progress(stage="surface", warning=f"{name}: {warning}"))
-    progress(Progress(stage="surface", part_errors=form.part_errors(chosen.document)))
+    errors = form.part_errors(chosen.document)
+    progress(Progress(stage="surface", step=2, steps=2, part_errors=errors))
     return NispModel(replace(chosen.document, info=info))

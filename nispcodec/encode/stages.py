@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from itertools import accumulate
+from itertools import accumulate, pairwise
+from statistics import fmean
 
 from nispcodec.core.progress import Listener, Progress
 from nispcodec.encode.config import EncodeConfig
@@ -13,53 +14,84 @@ from nispcodec.train.config import TrainConfig
 
 @dataclass(frozen=True)
 class StageSeconds:
-    """Seconds on two cores for an asset of 6,000 faces.
+    """Seconds on two cores: about the mean of a knight, a cow, a cabinet and a tea set.
 
-    before    of the stages before the fit, in their order
-    after     of what follows it
-    steps     steps of a preset's SDF in a second, the other networks beside it
-    paper     of the fit of the preset `paper`
-    rounding  share of a network's fit after which its weights are rounded
+    first      of the stages that every encode begins with, in their order
+    networks   of those before networks are fitted
+    estimate   of looking at triangles before that
+    triangles  of the candidates, where the asset is to be triangles
+    surface    of measuring what networks decode to
+    steps      steps of a preset's SDF in a second, the other networks beside it
+    paper      of the fit of the preset `paper`
+    rounding   share of a network's fit after which its weights are rounded
+    candidate  share of what is left that a candidate takes, as nobody knows how many there will be
     """
 
-    before: Mapping[str, float] = field(
-        default_factory=lambda: {
-            "textures": 0.5,
-            "charts and hidden walls": 0.7,
-            "samples": 2.0,
-            "probe how much there is to learn": 1.0,
-            "triangles": 1.0,
-        }
+    first: Mapping[str, float] = field(
+        default_factory=lambda: {"textures": 0.2, "charts and hidden walls": 1.1}
     )
-    after: float = 0.3
+    networks: Mapping[str, float] = field(
+        default_factory=lambda: {"samples": 2.5, "probe how much there is to learn": 1.5}
+    )
+    estimate: float = 4.5
+    triangles: float = 8.0
+    surface: float = 2.5
     steps: float = 2000.0
     paper: float = 1200.0
     rounding: float = 0.93
+    candidate: float = 0.2
+
+    def of(self, config: EncodeConfig, training: TrainConfig) -> dict[str, float]:
+        """The seconds of the stages that such an encode goes through, in their order.
+
+        "networks" is their fit.
+        """
+        last = {"surface": self.surface}
+        if config.geometry == "mesh":
+            return {**self.first, "triangles": self.triangles, **last}
+        looks = {"probe triangles": self.estimate} if config.geometry == "auto" else {}
+        return {
+            **self.first,
+            **self.networks,
+            **looks,
+            "networks": self._fit(config, training),
+            **last,
+        }
+
+    def _fit(self, config: EncodeConfig, training: TrainConfig) -> float:
+        seconds = self.paper
+        if config.preset != "paper":
+            seconds = training.budgets[config.preset].steps / self.steps
+        rounds = [len(pruning.rates) for pruning in config.prunings().values()]
+        return seconds * (1 + max(rounds, default=0)) * (1 + (config.target_error is not None))
 
 
 def with_overall(listen: Listener, config: EncodeConfig, training: TrainConfig) -> Listener:
     """A listener that passes every update on to `listen`, with `overall` set; for one encode."""
     usual = StageSeconds()
-    seconds = usual.paper
-    if config.preset != "paper":
-        seconds = training.budgets[config.preset].steps / usual.steps
-    rounds = [len(pruning.rates) for pruning in config.prunings().values()]
-    searched = config.target_error is not None
-    seconds *= (1 + max(rounds, default=0)) * (1 + searched)
-    return _Whole(listen, usual, seconds, _Fit(searched, usual.rounding))
+    fit = _Fit(config.target_error is not None, usual.rounding)
+    # Whether triangles of the size are as good as exact is asked before anything is fitted.
+    asked_first = config.target_size is not None and config.geometry == "auto"
+    return _Whole(listen, usual.of(config, training), fit, usual.candidate, asked_first)
 
 
 class _Whole:
     """Shares never fall: what is told too late or out of order changes nothing."""
 
-    def __init__(self, listen: Listener, usual: StageSeconds, seconds: float, fit: _Fit) -> None:
-        total = sum(usual.before.values()) + seconds + usual.after
-        ends = [end / total for end in accumulate(usual.before.values())]
-        starts = [0.0, *ends[:-1]]
+    def __init__(
+        self,
+        listen: Listener,
+        seconds: Mapping[str, float],
+        fit: _Fit,
+        candidate: float,
+        asked_first: bool,
+    ) -> None:
+        total = sum(seconds.values())
+        ends = [end / total for end in accumulate(seconds.values())]
         self._listen = listen
-        self._spans = dict(zip(usual.before, zip(starts, ends, strict=True), strict=True))
-        self._fit_span = (ends[-1], 1 - usual.after / total)
-        self._fit = fit
+        self._spans = dict(zip(seconds, pairwise([0.0, *ends]), strict=True))
+        self._fit, self._candidate = fit, candidate
+        self._asked_first, self._fitted = asked_first, False
         self._overall = 0.0
 
     def __call__(self, update: Progress) -> None:
@@ -68,15 +100,21 @@ class _Whole:
 
     def _share(self, update: Progress) -> float:
         if update.network:
-            return _within(self._fit_span, self._fit.share(update))
-        if update.stage == "surface":
-            return self._fit_span[1]
-        done = update.step / update.steps if update.steps else 0.0
-        return _within(self._spans[update.stage], done) if update.stage in self._spans else 0.0
+            self._fitted = True
+            return _within(self._spans["networks"], self._fit.share(update))
+        if update.stage == "triangles" or (update.stage == "probe triangles" and self._fitted):
+            return self._of_candidate(update)
+        done = min(update.step / update.steps, 1.0) if update.steps else 0.0
+        return _within(self._spans.get(update.stage, (0.0, 0.0)), done)
+
+    def _of_candidate(self, update: Progress) -> float:
+        fit_follows = self._asked_first and not self._fitted
+        last = self._spans["networks"][0] if fit_follows else 1.0
+        return _within((self._overall, last), self._candidate if update.step else 0.0)
 
 
 class _Fit:
-    """The share of all networks' fits that is done: that of the one that is least far.
+    """The share of all networks' fits that is done: their mean, as they take turns on few cores.
 
     A search for an error fits a network again and again: each time takes half of what is left.
     """
@@ -92,7 +130,7 @@ class _Fit:
             self._hear(update.network, self._fitted(update))
         left = 0.5 if self._searched else 0.0
         span = (1 - 0.5 ** (self._rounds - 1), 1 - left**self._rounds)
-        return _within(span, min(self._done.values(), default=0.0))
+        return _within(span, fmean(self._done.values() or [0.0]))
 
     def _hear(self, network: str, done: float) -> None:
         if done < self._done.get(network, 0.0):

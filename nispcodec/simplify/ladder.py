@@ -60,6 +60,7 @@ class Simplifier:
     source    without copies
     coded     the bytes of parts
     original  what errors are measured against
+    told      called after each candidate
     """
 
     copies: Copies
@@ -68,6 +69,7 @@ class Simplifier:
     coded: Coded
     config: LadderConfig = LadderConfig()
     seed: int = 0
+    told: Callable[[], None] = lambda: None
     _fitted: dict[int, Triangles] = field(default_factory=dict)
     _made: dict[tuple[int, int, int], Candidate] = field(default_factory=dict)
 
@@ -79,6 +81,7 @@ class Simplifier:
         seed: int = 0,
         counted: Counted | None = None,
         paint: Paint | None = None,
+        told: Callable[[], None] = lambda: None,
     ) -> Simplifier:
         """counted: the faces that candidates hold and that are looked for; None: all.
 
@@ -92,7 +95,7 @@ class Simplifier:
         same = len(source.triangles) == len(triangles)
         tree = source.tree if same else Tree(triangles.corners)
         original = Original.of(triangles, tree, config.samples, seed, counted, paint)
-        return Simplifier(copies, source, original, coded, config, seed)
+        return Simplifier(copies, source, original, coded, config, seed, told)
 
     def fitted(self, faces: int) -> Triangles:
         """About so many triangles, positions fitted; the source itself for as many as it has."""
@@ -138,6 +141,7 @@ class Simplifier:
             triangles = replace(triangles, uvs=uvs)
         parts = self.copies.parts(triangles, bits, uv_bits)
         errors = self.original.errors(scene([(mesh_of(part), part.placements) for part in parts]))
+        self.told()
         return Candidate(faces, parts, bits, uv_bits, errors, self.coded)
 
     def balanced(self, faces: int) -> Candidate:

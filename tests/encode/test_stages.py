@@ -6,10 +6,13 @@ from dataclasses import replace
 
 import pytest
 
+import nispcodec
 from nispcodec import EncodeConfig, Progress
+from nispcodec.encode.config import GEOMETRIES
 from nispcodec.encode.stages import StageSeconds, with_overall
 from nispcodec.train.config import TrainConfig
 from tests.encode.test_recipe import box
+from tests.geometry.shapes import box_asset
 
 
 def overall(updates: list[Progress], config: EncodeConfig | None = None) -> list[float]:
@@ -47,23 +50,61 @@ def test_a_real_encode_goes_from_0_to_nearly_1_and_never_back(config: EncodeConf
     shares = [each.overall for each in seen]
     assert shares[0] == 0
     assert shares == sorted(shares)
-    assert 0.45 < shares[-1] < 1
-    assert shares[-1] > 0.9 or config.target_error is not None
-    known = {*StageSeconds().before, "fit", "surface"}
+    assert shares[-1] == 1
+    known = {*StageSeconds().of(EncodeConfig(), TrainConfig()), "fit"}
     assert {each.stage for each in seen if not each.network} <= known
 
 
-def test_each_stage_before_the_fit_is_further_than_the_one_before() -> None:
-    stages = [Progress(stage=stage) for stage in StageSeconds().before]
-    half = Progress(stage="triangles", step=1, steps=2)
-    shares = overall([*stages, half, fit("sdf", 0.1)])
+def test_a_real_encode_as_triangles_goes_on_with_every_candidate() -> None:
+    seen: list[Progress] = []
+    nispcodec.encode(box_asset(), EncodeConfig(geometry="mesh"), seen.append)
+    assert len({each.overall for each in seen if each.stage == "triangles"}) > 3
+    shares = [each.overall for each in seen]
+    assert shares == sorted(shares)
+    assert (shares[0], shares[-1]) == (0, 1)
+
+
+@pytest.mark.parametrize("geometry", GEOMETRIES)
+def test_each_stage_is_further_than_the_one_before(geometry: str) -> None:
+    config = EncodeConfig(geometry=geometry)
+    names = StageSeconds().of(config, TrainConfig())
+    stages = [
+        fit("sdf", 0) if name == "networks" else Progress(stage=name, step=step, steps=2)
+        for name in names
+        for step in (1, 2)
+    ]
+    shares = overall(stages, config)
+    assert shares == sorted(shares)
+    # The fit begins where the stage before it ends.
+    assert len(set(shares)) == len(stages) - 2 * ("networks" in names)
+
+
+def test_candidates_go_on_without_an_end_as_nobody_knows_how_many_there_will_be() -> None:
+    made = [Progress(stage="triangles", step=step) for step in range(30)]
+    shares = overall([Progress(stage="probe triangles", step=1, steps=4), *made])
+    assert shares[1:] == sorted(set(shares[1:]))
+    assert 0.95 < shares[-1] < 1
+
+
+def test_triangles_that_are_looked_at_after_a_fit_go_on_too() -> None:
+    looks = [Progress(stage="probe triangles", step=step, steps=4) for step in (1, 2)]
+    shares = overall([fit("sdf", 1), rounded("sdf"), *looks, Progress(stage="triangles", step=1)])
     assert shares == sorted(set(shares))
 
 
-def test_the_slowest_network_says_how_far_the_fit_is() -> None:
+def test_triangles_that_are_asked_for_before_a_fit_leave_it_its_share() -> None:
+    made = [Progress(stage="triangles", step=step) for step in range(30)]
+    shares = overall([*made, fit("sdf", 0.1), *made], EncodeConfig(target_size=1e4))
+    assert shares == sorted(shares)
+    before, after = shares[len(made) - 1 : len(made) + 1]
+    assert before < after < 0.5 < shares[-1]
+
+
+def test_every_network_moves_the_whole() -> None:
     alone = overall([fit("sdf", 0.3)])[-1]
-    assert overall([fit("uv", 0.3), fit("sdf", 0.3), fit("uv", 0.9)])[-1] == alone
-    assert overall([fit("uv", 0.3), fit("sdf", 0.3), fit("uv", 0.9), fit("sdf", 0.5)])[-1] > alone
+    both, further = overall([fit("uv", 0.3), fit("sdf", 0.3), fit("uv", 0.9)])[1:]
+    assert both == pytest.approx(alone)
+    assert further > both
 
 
 def test_a_fit_is_done_when_the_weights_are_rounded() -> None:
