@@ -13,7 +13,7 @@ CONFIG = FormConfig()
 
 @pytest.fixture(scope="module")
 def ball() -> MeshForm:
-    return MeshForm(analyze(soup(sphere(16))), 0, CONFIG, silent)
+    return MeshForm(analyze(soup(sphere(12))), 0, CONFIG, silent)
 
 
 def test_the_more_bytes_the_nearer_and_nearly_all_are_used(ball: MeshForm) -> None:
