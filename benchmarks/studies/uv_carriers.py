@@ -53,6 +53,7 @@ from nispcodec.metrics.uv import uv_errors
 from nispcodec.simplify.config import CollapseConfig, CopiesConfig, FitConfig, LadderConfig
 from nispcodec.simplify.errors import Counted, mesh_of
 from nispcodec.simplify.ladder import Simplifier
+from nispcodec.simplify.quantize import Grid
 from nispcodec.simplify.scene import scene
 from nispcodec.simplify.search import best_for
 from nispcodec.simplify.triangles import Triangles, distinct_corners
@@ -226,11 +227,11 @@ def _rounded(
 ) -> tuple[MeshPart, ...]:
     """About so many faces as parts, UVs fitted to where readers will have the vertices."""
     triangles = simplifier.fitted(faces)
-    placed = simplifier.copies.rounded(triangles, bits)
-    if moved:
-        placed = replace(placed, positions=task.projected(placed.positions))
-    uvs = fitted_uvs(simplifier.source, placed, simplifier.config.fit, simplifier.seed).uvs
-    return simplifier.copies.parts(replace(triangles, uvs=uvs), bits, uv_bits)
+    grid, config = Grid.of(triangles.positions, bits), simplifier.config
+    placed = simplifier.copies.rounded(triangles, grid, config.rounding, simplifier.seed)
+    seen = replace(placed, positions=task.projected(placed.positions)) if moved else placed
+    uvs = fitted_uvs(simplifier.source, seen, config.fit, simplifier.seed).uvs
+    return simplifier.copies.parts(replace(placed, uvs=uvs), grid, Grid.of(uvs, uv_bits))
 
 
 def position_bytes(parts: tuple[MeshPart, ...]) -> int:

@@ -228,7 +228,7 @@ class MeshForm:
             return
         uv_bits = self.simplifier.uv_bits_for(self._config.negligible_uv)
         for coarseness in self._config.coarseness:
-            bits = self.simplifier.bits_for(coarseness * self._config.negligible)
+            bits = self.simplifier.bits_for(coarseness * self._config.negligible, whole=True)
             found = self.simplifier.candidate(everything, bits, uv_bits)
             yield found
             if found.size > most_bytes:

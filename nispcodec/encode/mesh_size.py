@@ -32,7 +32,7 @@ def _whole(simplifier: Simplifier, most_bytes: float, config: FormConfig) -> Can
     everything = len(simplifier.source.triangles)
     if everything * config.least_bytes_per_face > most_bytes:
         return None
-    bits = simplifier.bits_for(config.negligible)
+    bits = simplifier.bits_for(config.negligible, whole=True)
     uv_bits = simplifier.uv_bits_for(config.negligible_uv)
 
     @cache

@@ -118,6 +118,24 @@ class CreaseConfig:
 
 
 @dataclass(frozen=True)
+class RoundingConfig:
+    """How positions are rounded, by weights against that of moving the surface across.
+
+    sliding  of moving a vertex along it: textures move too
+    seam     of moving one off a seam, or a border
+    sweeps   over all vertices: neighbors make up for each other from the second on ...
+    share    ... in each of which so many are rounded anew
+    turn     cosine of the angle by which a face may turn
+    """
+
+    sliding: float = 0.01
+    seam: float = 1.0
+    sweeps: int = 5
+    share: float = 0.4
+    turn: float = 0.5
+
+
+@dataclass(frozen=True)
 class DiscoloredConfig:
     """Which places of a simplified surface have lost their color, and how they get it back.
 
@@ -140,7 +158,8 @@ class LadderConfig:
 
     samples       points on each surface that errors are measured with
     fewest        faces of the first candidate
-    step          of the grid, for a mean distance of 1: fewer faces save as much as fewer bits
+    step          of the grid, for a mean distance of 1: fewer faces save as much as fewer bits ...
+    whole_step    ... and where all faces are kept, whose vertices are rounded to the nearest
     uv_step       of the grid of UVs, for a UV error of 1
     tolerance     mean distance below which rounding need not go, normalized frame
     uv_tolerance  the same of UVs
@@ -148,13 +167,15 @@ class LadderConfig:
 
     samples: int = 20000
     fewest: int = 150
-    step: float = 1.8
+    step: float = 3.6
+    whole_step: float = 1.8
     uv_step: float = 1.8
     tolerance: float = 5e-5
     uv_tolerance: float = 1e-4
     collapse: CollapseConfig = CollapseConfig()
     fit: FitConfig = FitConfig()
     copies: CopiesConfig = CopiesConfig()
+    rounding: RoundingConfig = RoundingConfig()
     discolored: DiscoloredConfig = DiscoloredConfig()
 
 

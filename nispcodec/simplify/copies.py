@@ -13,7 +13,9 @@ from nispcodec.core.asset import TexturedMesh
 from nispcodec.core.creases import turned_sides
 from nispcodec.core.mesh_part import MeshPart, Placement
 from nispcodec.core.placing import placed_points
+from nispcodec.simplify.config import RoundingConfig
 from nispcodec.simplify.quantize import Grid, on_grids
+from nispcodec.simplify.rounding import rounded_along
 from nispcodec.simplify.scene import scene
 from nispcodec.simplify.triangles import Triangles, joined
 
@@ -110,26 +112,25 @@ class Copies:
             placed.append(replace(group, weight=float(weight), shift=(x, y, z)))
         return Copies(_enlarged(held, placed), tuple(placed), covered, fewest_left)
 
-    def parts(self, triangles: Triangles, bits: int, uv_bits: int) -> tuple[MeshPart, ...]:
-        """The simplified triangles as parts, rounded as `quantized` rounds.
+    def parts(self, triangles: Triangles, grid: Grid, uv_grid: Grid) -> tuple[MeshPart, ...]:
+        """The simplified triangles as parts, rounded to the nearest points of the grids.
 
-        All have one grid. A group of which no face is left has no part; copies of one of which few
-        are left are faces like others.
+        A group of which no face is left has no part; copies of one of which few are left are faces
+        like others.
         """
-        grid, uv_grid = Grid.of(triangles.positions, bits), Grid.of(triangles.uvs, uv_bits)
         return tuple(
             group.part(home, grid.around(home.positions), uv_grid.around(home.uvs))
             for group, home in self._held(triangles)
         )
 
-    def rounded(self, triangles: Triangles, bits: int) -> Triangles:
-        """The simplified triangles, positions as `parts` rounds them."""
-        grid = Grid.of(triangles.positions, bits)
-        if len(self.groups) == 1 and self.groups[0].placements == (Placement(),):
-            return replace(triangles, positions=grid.rounded(triangles.positions))
+    def rounded(
+        self, triangles: Triangles, grid: Grid, config: RoundingConfig, seed: int
+    ) -> Triangles:
+        """The simplified triangles with vertices moved to points of the grid, along the surface."""
         weights, shifts = _weights(triangles, self.groups)
-        places = grid.rounded((triangles.positions - shifts) / weights)
-        return replace(triangles, positions=places * weights + shifts)
+        places = ((triangles.positions - shifts) / weights - grid.origin) / grid.step
+        found = rounded_along(triangles, places, config, seed) * grid.step + grid.origin
+        return replace(triangles, positions=found * weights + shifts)
 
     def scene(self, triangles: Triangles) -> TexturedMesh:
         """The triangles with all their copies, in the materials of the bodies."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
@@ -18,6 +18,7 @@ from nispcodec.simplify.copy_search import copies_of
 from nispcodec.simplify.discolored import Discolored
 from nispcodec.simplify.errors import Counted, Errors, Original, mesh_of
 from nispcodec.simplify.position_fit import fitted_positions
+from nispcodec.simplify.quantize import Grid
 from nispcodec.simplify.scene import scene
 from nispcodec.simplify.shading import shaded
 from nispcodec.simplify.source import Source
@@ -134,12 +135,12 @@ class Simplifier:
 
     def _rounded(self, faces: int, bits: int, uv_bits: int) -> Candidate:
         triangles = self.fitted(faces)
+        grid = Grid.of(triangles.positions, bits)
         if faces < len(self.source.triangles):
+            triangles = self.copies.rounded(triangles, grid, self.config.rounding, self.seed)
             # UVs are fitted to the places that rounding leaves.
-            placed = self.copies.rounded(triangles, bits)
-            uvs = fitted_uvs(self.source, placed, self.config.fit, self.seed).uvs
-            triangles = replace(triangles, uvs=uvs)
-        parts = self.copies.parts(triangles, bits, uv_bits)
+            triangles = fitted_uvs(self.source, triangles, self.config.fit, self.seed)
+        parts = self.copies.parts(triangles, grid, Grid.of(triangles.uvs, uv_bits))
         errors = self.original.errors(scene([(mesh_of(part), part.placements) for part in parts]))
         self.told()
         return Candidate(faces, parts, bits, uv_bits, errors, self.coded)
@@ -147,15 +148,19 @@ class Simplifier:
     def balanced(self, faces: int) -> Candidate:
         """About so many faces, with bits whose rounding suits the error that is there before."""
         before = self.original.errors(self.copies.scene(self.fitted(faces)))
-        bits = self.bits_for(max(before.distance, self.config.tolerance))
+        whole = faces >= len(self.source.triangles)
+        bits = self.bits_for(max(before.distance, self.config.tolerance), whole)
         uv_bits = self.uv_bits_for(max(before.uv_median, self.config.uv_tolerance))
         return self.candidate(faces, bits, uv_bits)
 
-    def bits_for(self, distance: float) -> int:
-        """Bits a coordinate whose rounding is the best part of a mean distance."""
-        positions = self.source.triangles.positions
+    def bits_for(self, distance: float, whole: bool = False) -> int:
+        """Bits a coordinate whose rounding is the best part of a mean distance.
+
+        whole: where all faces are kept.
+        """
+        positions, config = self.source.triangles.positions, self.config
         extent = float(np.ptp(positions, axis=0).max())
-        return _bits(extent, self.config.step * distance)
+        return _bits(extent, (config.whole_step if whole else config.step) * distance)
 
     def uv_bits_for(self, uv: float) -> int:
         """Bits a texture coordinate whose rounding is the best part of a typical UV error."""

@@ -66,7 +66,10 @@ def kept_whole(
     None where not even the most bits are.
     """
     everything, goal = len(simplifier.source.triangles), Goal(distance, uv)
-    bits, uv_bits = simplifier.bits_for(distance), simplifier.uv_bits_for(min(uv, config.uv_blur))
+    bits, uv_bits = (
+        simplifier.bits_for(distance, whole=True),
+        simplifier.uv_bits_for(min(uv, config.uv_blur)),
+    )
     found = simplifier.candidate(everything, bits, uv_bits)
     while not goal.met(found):
         if max(bits, uv_bits) >= MAX_GRID_BITS:

@@ -39,13 +39,18 @@ def test_a_box_stays_a_box(tmp_path: Path) -> None:
 
 @pytest.mark.slow
 def test_the_smaller_form_is_written() -> None:
-    # So few triangles would be taken without a look at networks.
-    tuning = replace(SHORT, forms=replace(SHORT.forms, surely_best=-math.inf))
-    model = nispcodec.encode(box_asset(), EncodeConfig(), tuning=tuning)
+    looked = replace(SHORT, forms=replace(SHORT.forms, surely_best=-math.inf))
+    model = nispcodec.encode(box_asset(), EncodeConfig(), tuning=looked)
     assert model.document.field is None
     assert float(model.document.info["other_form_bytes"]) > 0
     field = nispcodec.encode(box_asset(), EncodeConfig(geometry="field"), tuning=SHORT)
     assert field.document.meshes == ()
+
+
+def test_networks_of_a_box_are_not_looked_at() -> None:
+    model = nispcodec.encode(box_asset(), EncodeConfig(), tuning=SHORT)
+    assert model.document.field is None
+    assert "other_form_bytes" not in model.document.info
 
 
 def test_a_card_is_a_sheet_without_thickness() -> None:

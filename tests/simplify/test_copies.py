@@ -14,16 +14,24 @@ from nispcodec.core.mesh_part import MeshPart
 from nispcodec.core.placing import placed_points
 from nispcodec.format import mesh
 from nispcodec.model import NispModel
-from nispcodec.simplify.config import CopiesConfig
+from nispcodec.simplify.config import CopiesConfig, RoundingConfig
 from nispcodec.simplify.copies import Copies
 from nispcodec.simplify.copy_search import copies_of
-from nispcodec.simplify.quantize import quantized
+from nispcodec.simplify.quantize import Grid, quantized
+from nispcodec.simplify.triangles import Triangles
 from tests.simplify.meshes import area, ball, simplifier, triangles_of
 from tests.simplify.scenes import PLACES, copied, pebble
 
 SCENE = triangles_of(copied(pebble()))
 COPIES = copies_of(SCENE, CopiesConfig())
 BITS = 12
+
+
+def parts_of(
+    copies: Copies, triangles: Triangles, bits: int = BITS, uv_bits: int = BITS
+) -> tuple[MeshPart, ...]:
+    grids = Grid.of(triangles.positions, bits), Grid.of(triangles.uvs, uv_bits)
+    return copies.parts(triangles, *grids)
 
 
 def asked(parts: tuple[MeshPart, ...], points: Float64Array) -> NispModel:
@@ -38,8 +46,8 @@ def points_about() -> Float64Array:
 
 
 def test_answers_are_those_of_the_asset_without_copies() -> None:
-    held = mesh.decode(mesh.encode(COPIES.parts(COPIES.triangles, BITS, BITS)))
-    whole = mesh.decode(mesh.encode(Copies.none(SCENE).parts(SCENE, BITS, BITS)))
+    held = mesh.decode(mesh.encode(parts_of(COPIES, COPIES.triangles)))
+    whole = mesh.decode(mesh.encode(parts_of(Copies.none(SCENE), SCENE)))
     points, step = points_about(), whole[0].step
     copied_sdf, plain_sdf = asked(held, points).sdf(points), asked(whole, points).sdf(points)
     np.testing.assert_allclose(copied_sdf, plain_sdf, atol=2 * step)
@@ -49,13 +57,13 @@ def test_answers_are_those_of_the_asset_without_copies() -> None:
 
 
 def test_four_copies_take_less_than_half_of_the_bytes() -> None:
-    held = len(mesh.encode(COPIES.parts(COPIES.triangles, BITS, BITS)))
-    whole = len(mesh.encode(Copies.none(SCENE).parts(SCENE, BITS, BITS)))
+    held = len(mesh.encode(parts_of(COPIES, COPIES.triangles)))
+    whole = len(mesh.encode(parts_of(Copies.none(SCENE), SCENE)))
     assert held < 0.5 * whole
 
 
 def test_materials_of_a_copy_are_those_of_its_charts() -> None:
-    (part,) = COPIES.parts(COPIES.triangles, BITS, BITS)
+    (part,) = parts_of(COPIES, COPIES.triangles)
     own = [each.materials for each in part.placements if each.materials is not None]
     assert len(own) == 1
     assert own[0].tolist() == (part.chart_materials + 2).tolist()
@@ -63,7 +71,7 @@ def test_materials_of_a_copy_are_those_of_its_charts() -> None:
 
 def test_a_part_of_all_is_the_quantized_one() -> None:
     triangles = ball()
-    (part,) = Copies.none(triangles).parts(triangles, 10, 9)
+    (part,) = parts_of(Copies.none(triangles), triangles, 10, 9)
     assert mesh.encode((part,)) == mesh.encode((quantized(triangles, 10, 9),))
 
 
@@ -87,8 +95,8 @@ def test_candidates_are_measured_against_all_copies() -> None:
 
 def test_copies_of_which_few_faces_are_left_are_faces_like_others() -> None:
     few = replace(COPIES, fewest_left=len(COPIES.triangles) + 1)
-    (part,) = few.parts(COPIES.triangles, BITS, BITS)
-    (held,) = COPIES.parts(COPIES.triangles, BITS, BITS)
+    (part,) = parts_of(few, COPIES.triangles)
+    (held,) = parts_of(COPIES, COPIES.triangles)
     assert len(part.faces) == len(SCENE)
     assert len(part.placements) == 1
     assert set(part.chart_materials.tolist()) == {0, 1, 2, 3}
@@ -103,9 +111,10 @@ def test_bodies_are_simplified_with_the_area_of_all_their_copies() -> None:
     assert area(home) == pytest.approx(area(SCENE) / COPIES.groups[0].weight ** 2, rel=1e-6)
 
 
-def test_positions_are_rounded_as_parts_are() -> None:
-    rounded = COPIES.rounded(COPIES.triangles, BITS)
-    (part,) = COPIES.parts(COPIES.triangles, BITS, BITS)
+def test_rounded_positions_stay_as_they_are_in_parts() -> None:
+    grid = Grid.of(COPIES.triangles.positions, BITS)
+    rounded = COPIES.rounded(COPIES.triangles, grid, RoundingConfig(), 0)
+    (part,) = COPIES.parts(rounded, grid, Grid.of(rounded.uvs, BITS))
     home = COPIES.groups[0].home(rounded)
     np.testing.assert_allclose(part.normalized()[part.faces], home.corners, atol=1e-6)
 
