@@ -156,6 +156,8 @@ class FormConfig:
     far_weight       the same for surface that is made up or lost: ten times what is warned of is
                      worth an eighth more bytes
     notable_far      share of the area that a form may make up, or lose, before its owner is warned
+    sound_growth     of the faces of triangles that make up or lose surface, to the next tried ...
+    sound_trials     ... and how often: bytes grow about as much
     most_worth       times a field's bytes that triangles may take at most where it makes up surface
     dense            source faces for each that simplification leaves from which on a body is dense
                      and smooth: networks suit it
@@ -194,6 +196,8 @@ class FormConfig:
     negligible_color: float = 5e-3
     far_weight: float = 0.05
     notable_far: float = 5e-4
+    sound_growth: float = 1.25
+    sound_trials: int = 3
     most_worth: float = 3.0
     dense: float = 3.0
     notable_body: float = 0.03

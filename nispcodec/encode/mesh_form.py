@@ -188,9 +188,12 @@ class MeshForm:
         return self._refined(self._rungs.cheapest(cost, rest.size), math.inf, math.inf, rest)
 
     def about(self, distance: float) -> Candidate:
-        """A candidate whose mean distance is about this."""
+        """A candidate whose mean distance is about this.
+
+        Of a few more faces where surface is made up or lost, until that is not notable.
+        """
         self._begin("triangles")
-        found = self._rungs.about(distance)
+        found = self._sound(self._rungs.about(distance))
         return self._refined(found, max(distance, found.errors.distance), math.inf)
 
     def _refined(
@@ -248,6 +251,14 @@ class MeshForm:
         """The candidate that loses least, of those a search looks at: by pictures, say."""
         self._begin("triangles")
         return least_loss(self.simplifier, loss, self._config.descent)
+
+    def _sound(self, found: Candidate) -> Candidate:
+        """The same, or one of a few more faces where that loses or makes up surface."""
+        for _ in range(self._config.sound_trials):
+            if self._config.is_sound(found.errors):
+                break
+            found = self._rungs.at(round(found.asked * self._config.sound_growth))
+        return found
 
     def fewest(self) -> Candidate:
         """The candidate of the fewest faces that are made."""

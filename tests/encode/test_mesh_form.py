@@ -13,6 +13,7 @@ from nispcodec.encode.config import FormConfig
 from nispcodec.encode.mesh_form import MeshForm, Rest, coded_bytes
 from nispcodec.geometry.analysis import analyze
 from nispcodec.simplify.errors import Errors
+from nispcodec.simplify.ladder import Candidate
 from tests.geometry.shapes import box_asset, soup, sphere
 from tests.simplify.scenes import copied, pebble
 
@@ -71,6 +72,20 @@ def test_the_best_makes_up_and_loses_nothing_notable(ball: MeshForm) -> None:
     coarse = ball.fewest()
     assert not CONFIG.is_sound(coarse.errors)
     assert CONFIG.is_sound(ball.best(1.0, math.inf).errors)
+
+
+def test_what_is_about_as_near_has_more_faces_where_it_makes_up_surface() -> None:
+    analysis = analyze(soup(sphere(16)))
+
+    def about(notable: float) -> Candidate:
+        form = MeshForm(analysis, 0, replace(CONFIG, notable_far=notable), silent)
+        form.estimate(6e-3, 300.0, 1e9)
+        return form.about(6e-3)
+
+    lax = about(1.0)
+    strict = about(0.5 * lax.errors.made_up.share)
+    assert strict.errors.made_up.share <= 0.5 * lax.errors.made_up.share
+    assert lax.asked < strict.asked < 2 * lax.asked
 
 
 def test_beside_networks_triangles_are_as_fine_as_the_whole_asks(ball: MeshForm) -> None:
