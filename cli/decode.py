@@ -101,8 +101,8 @@ def command(
     """Write the surface of MODEL (.nisp, or - for standard input) as a textured mesh.
 
     It is in the units of the original. Of a field, as many triangles are written
-    as keep it within a part of its own error, from a grid of 256 to 512 cells a
-    side. A glTF gets its buffer and images
+    as keep it within a part of its own error, at most 60,000, from a grid of 256
+    to 512 cells a side. A glTF gets its buffer and images
     beside it, an OBJ its MTL and images, a PLY its images. Levels share their images.
 
     \b

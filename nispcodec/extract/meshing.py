@@ -51,8 +51,8 @@ def textured_mesh(
     resolution: cells along the cube's edge, see `default_resolution`; faces: the most triangles
     that the mesh may have, seams included, though mesh parts keep all of theirs; error: as few
     triangles as keep the mean distance to the field's surface below it (normalized frame), by
-    default `negligible_error`. Where only a resolution is given, all triangles of that grid are
-    kept. keep_spurious: do not drop noise.
+    default `negligible_error`, in at most `SimplifyConfig.most` triangles. Where only a resolution
+    is given, all triangles of that grid are kept. keep_spurious: do not drop noise.
     """
     meshes, report = textured_levels(document, 1, resolution, faces, error, keep_spurious, config)
     return meshes[0], report
@@ -174,13 +174,14 @@ def _field_levels(
         # What the grid itself is off by cannot be had back.
         own = deviation(field.sdf, grid, config.simplify.measured)
         error = max(negligible_error(document.info, config.simplify), own)
-    surface = grid if error is None else simplest(field.sdf, grid, error, config.simplify)
+        faces = config.simplify.most
+    surface = grid if error is None else simplest(field.sdf, grid, error, faces, config.simplify)
     if faces is None:
         found = [_cut(field, surface, surface is not grid, config)]
     else:
-        found = [_with_at_most(field, surface, faces, config)]
+        found = [_with_at_most(field, grid, surface, faces, config)]
     for count in _counts(len(found[0][0].faces), levels, config.levels):
-        fewer = _with_at_most(field, surface, count, config)
+        fewer = _with_at_most(field, grid, surface, count, config)
         # Seams take triangles of their own: there is a least number of them.
         found.append(min(found[-1], fewer, key=lambda cut: len(cut[0].faces)))
     dressed = (_dressed(document, field, *_opened(field, *cut, config)) for cut in found)
@@ -214,18 +215,27 @@ def _cut(
 
 
 def _with_at_most(
-    field: Field, surface: Surface, faces: int, config: ExtractConfig
+    field: Field, grid: Surface, surface: Surface, faces: int, config: ExtractConfig
 ) -> tuple[Surface, Int32Array]:
-    """The surface simplified until it has at most `faces` triangles after being cut."""
+    """The grid's surface, simplified to `surface` and on to at most `faces` after being cut."""
     target = faces
     for _ in range(config.simplify.face_fittings):
-        fewer = simplified(field.sdf, surface, target, config.simplify)
-        cut, charts = _cut(field, fewer, fewer is not surface, config)
+        surface = simplified(field.sdf, surface, target, config.simplify)
+        cut, charts = _cut(field, surface, surface is not grid, config)
         # Far from its target it is stuck: asked for less it takes as long, and gives the same.
-        if len(cut.faces) <= faces or len(fewer.faces) > config.simplify.stuck * target:
+        if len(cut.faces) <= faces or len(surface.faces) > config.simplify.stuck * target:
             break
-        surface, target = fewer, int(0.99 * target * faces / len(cut.faces))
+        target = _left_to(len(surface.faces), len(cut.faces), faces)
     return cut, charts
+
+
+def _left_to(bare: int, cut: int, faces: int) -> int:
+    """How many triangles are to be cut for `faces`, where `bare` ones became `cut`.
+
+    What seams take goes with the length of a triangle's side: with the root of their number.
+    """
+    taken = max(cut - bare, 0) / math.sqrt(bare)
+    return int(((math.sqrt(taken**2 + 4 * 0.98 * faces) - taken) / 2) ** 2)
 
 
 def _missed(found: int, whole: int, faces: int | None) -> tuple[str, ...]:

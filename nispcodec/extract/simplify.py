@@ -70,24 +70,31 @@ def without_fins(surface: Surface) -> Surface:
 
 
 def simplest(
-    network: Network, surface: Surface, error: float, config: SimplifyConfig = SimplifyConfig()
+    network: Network,
+    surface: Surface,
+    error: float,
+    most: int | None = None,
+    config: SimplifyConfig = SimplifyConfig(),
 ) -> Surface:
     """The surface with about as few triangles as keep its deviation within `error`.
 
     Fewer and fewer are tried, as many as the last ones' deviation foretells; where those are too
-    few, more. Simplifying what is simple already takes little time.
+    few, more. Simplifying what is simple already takes little time. There are never many more than
+    `most` after seams are cut, whatever the deviation.
     """
-    fewest, share = surface, config.first
+    whole = len(surface.faces)
+    bare = whole if most is None else int(config.bare * most)
+    fewest, share = surface, bare / whole if bare < whole else config.first
     while share < config.close:
         fewer = _collapsed(fewest, int(share * len(fewest.faces)), config)
         left = config.fitting * deviation(network, fewer, config.measured)
         foretold = (left / error) ** config.slope
         if len(fewer.faces) >= config.close * len(fewest.faces):
             break
-        if foretold > 1:
-            share *= max(foretold, config.more)
-        else:
+        if foretold <= 1 or len(fewest.faces) > bare:
             fewest, share = fewer, max(foretold, config.shrinkage)
+        else:
+            share *= max(foretold, config.more)
     return fewest if fewest is surface else _finished(network, surface, fewest, config)
 
 

@@ -65,6 +65,16 @@ class Collapses:
     owners: Int64Array
     claims: Int64Array
 
+    def joined(self, others: Collapses) -> Collapses:
+        """These, and after them others."""
+        return Collapses(
+            np.concatenate([self.removed, others.removed]),
+            np.concatenate([self.target, others.target]),
+            np.concatenate([self.gain, others.gain]),
+            np.concatenate([self.owners, others.owners + len(self.removed)]),
+            np.concatenate([self.claims, others.claims]),
+        )
+
 
 @dataclass(frozen=True)
 class Flips:
@@ -100,6 +110,7 @@ def replacements(
     after = np.where(before == removed[owners, None], target[owners, None], before)
     goes = (before == target[owners, None]).any(axis=1)
     old, new = shapes.badness(before), np.where(goes, 0, shapes.badness(after))
+    least = shapes.config.worth * np.bincount(owners, old**2, minlength=count)
     gain = np.bincount(owners, old**2 - new**2, minlength=count).astype(np.float64)
     give, lifted = np.zeros(count), np.zeros(count)
     np.maximum.at(give, owners, shapes.give(before))
@@ -108,7 +119,7 @@ def replacements(
     linked = wedges.linked(wedges.ends[ring], target[owners])
     shared = np.bincount(owners, linked, minlength=count)
     sound = (shared == 2) | (target != wedges.ends[half_edges])
-    better = np.flatnonzero(kept & sound & (gain > 0) & (lifted <= give))
+    better = np.flatnonzero(kept & sound & (gain > least) & (lifted <= give))
     return _chosen(Collapses(removed, target, gain, owners, wedges.ends[ring]), better)
 
 

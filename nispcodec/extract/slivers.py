@@ -5,6 +5,7 @@ normal: that bounds its aspect and its turn at once. Around each bad face edges 
 flipped, the best first, where all faces around get better together (after Botsch and Kobbelt,
 "A Robust Procedure to Eliminate Degenerate Faces from Triangle Meshes", 2001). Where neither helps,
 vertices slide a part of the way along an edge, which leaves the surface where it is just as well.
+A face that nothing helps is given up until something changes beside it.
 """
 
 from __future__ import annotations
@@ -54,7 +55,7 @@ def without_slivers(
 
 @dataclass(frozen=True)
 class Patch:
-    """faces (m, 3), the chart of each (m,), and which are bad (m,)."""
+    """faces (m, 3), the chart of each (m,), and which are bad and not given up (m,)."""
 
     faces: Int64Array
     charts: Int32Array
@@ -69,12 +70,22 @@ def _improved(network: Network, shapes: Shapes, patch: Patch) -> tuple[Shapes, P
     wedges = Wedges.of(patch.faces[near], patch.charts[near])
     sides = (3 * np.flatnonzero(patch.bad[near])[:, None] + np.arange(3)).ravel()
     down, turned = collapses(shapes, wedges, sides), flips(shapes, wedges, sides)
-    if not len(down.removed) + len(turned.rows):
-        shapes, down = _slid(network, shapes, wedges, np.flatnonzero(touched))
+    idle = ~_concerned(down, turned, len(shapes.positions))[patch.faces[patch.bad]].any(axis=1)
+    shapes, slid = _slid(network, shapes, wedges, np.unique(patch.faces[patch.bad][idle]))
+    down = down.joined(slid)
     if not len(down.removed) + len(turned.rows):
         return shapes, patch
+    concerned = _concerned(down, turned, len(shapes.positions))
     down, turned = independent(down, turned, len(shapes.positions))
-    return shapes, _changed(shapes, patch, near, down, turned)
+    return shapes, _changed(shapes, patch, near, down, turned, concerned)
+
+
+def _concerned(down: Collapses, turned: Flips, count: int) -> BoolArray:
+    """Which of `count` vertices operations concern."""
+    concerned = np.zeros(count, np.bool_)
+    concerned[down.claims] = True
+    concerned[turned.claims] = True
+    return concerned
 
 
 def _slid(
@@ -93,16 +104,22 @@ def _slid(
 
 
 def _changed(
-    shapes: Shapes, patch: Patch, near: Int64Array, down: Collapses, turned: Flips
+    shapes: Shapes,
+    patch: Patch,
+    near: Int64Array,
+    down: Collapses,
+    turned: Flips,
+    concerned: BoolArray,
 ) -> Patch:
-    """After operations on the faces `near`."""
+    """After operations on the faces `near`; bad ones without a vertex `concerned` are given up."""
     goes_to = np.arange(len(shapes.positions))
     goes_to[down.removed] = down.target
     after = patch.faces[near]
     after[turned.rows] = turned.faces
     after = goes_to[after]
     faces, bad = patch.faces.copy(), patch.bad.copy()
-    faces[near], bad[near] = after, shapes.badness(after) > shapes.config.aspect
+    faces[near] = after
+    bad[near] = concerned[after].any(axis=1) & (shapes.badness(after) > shapes.config.aspect)
     kept = np.ones(len(faces), np.bool_)
     kept[near] = (after != np.roll(after, 1, axis=1)).all(axis=1)
     return Patch(faces[kept], patch.charts[kept], bad[kept])

@@ -75,6 +75,26 @@ def test_by_default_there_are_as_few_faces_as_the_files_own_error_lets() -> None
     assert deviation(sdf, surface) <= 1.05 * negligible_error({"distance_error": 5.5e-4})
 
 
+def test_by_default_there_is_a_bound_that_seams_keep_too() -> None:
+    document = tiny.document(tiny.sphere(), tiny.octants())
+    exact = replace(document, info={"distance_error": 1e-9})
+    limits = ResolutionConfig(least=64, most=64)
+    config = ExtractConfig(limits, simplify=SimplifyConfig(most=1500, finest=1e-9))
+    mesh, _ = textured_mesh(exact, config=config)
+    assert 1000 < len(mesh.faces) <= 1500
+    assert mesh.warnings == ()
+    # Who asks for a grid gets all of it.
+    assert len(textured_mesh(exact, 64, config=config)[0].faces) > 5 * 1500
+
+
+@pytest.mark.parametrize("faces", [1000, 300, 100])
+def test_seams_are_among_the_faces_asked_for(faces: int) -> None:
+    document = tiny.document(tiny.sphere(), tiny.octants())
+    mesh = NispModel(document).to_mesh(48, faces=faces)
+    assert 0.7 * faces < len(mesh.faces) <= faces
+    assert mesh.warnings == ()
+
+
 @pytest.mark.parametrize("told", [0, -1.0, float("nan"), "small", True, None])
 def test_errors_that_make_no_sense_are_not_believed(told: Any) -> None:
     usual = SimplifyConfig.usual

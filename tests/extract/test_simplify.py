@@ -64,6 +64,14 @@ def test_an_error_that_nothing_keeps_leaves_every_triangle(ball: Network, surfac
     assert simplest(ball, surface, 1e-9) is surface
 
 
+def test_no_more_are_left_than_allowed_whatever_the_error(ball: Network, surface: Surface) -> None:
+    bounded = simplest(ball, surface, 1e-9, 1000)
+    assert 800 < len(bounded.faces) <= 1000
+    assert_closed(bounded.faces)
+    # Where the error lets fewer, there are fewer.
+    assert len(simplest(ball, surface, 2e-3, 1000).faces) < 800
+
+
 def test_fins_go_and_everything_else_stays() -> None:
     tetrahedron = np.array([[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])
     fin = np.array([[1, 2, 4], [4, 2, 1]])
