@@ -253,11 +253,13 @@ class MeshForm:
         return least_loss(self.simplifier, loss, self._config.descent)
 
     def _sound(self, found: Candidate) -> Candidate:
-        """The same, or one of a few more faces where that loses or makes up surface."""
-        for _ in range(self._config.sound_trials):
-            if self._config.is_sound(found.errors):
-                break
-            found = self._rungs.at(round(found.asked * self._config.sound_growth))
+        """The first of the same and a few more faces that neither loses nor makes up surface."""
+        everything, faces = len(self.simplifier.source.triangles), float(found.asked)
+        for _ in range(self._config.sound_trials + 1):
+            other = self._rungs.at(round(min(faces, everything)))
+            if self._config.is_sound(other.errors):
+                return other
+            faces *= self._config.sound_growth
         return found
 
     def fewest(self) -> Candidate:

@@ -70,13 +70,16 @@ def with_overall(listen: Listener, config: EncodeConfig, training: TrainConfig) 
     """A listener that passes every update on to `listen`, with `overall` set; for one encode."""
     usual = StageSeconds()
     fit = _Fit(config.target_error is not None, usual.rounding)
-    # Whether triangles of the size are as good as exact is asked before anything is fitted.
-    asked_first = config.target_size is not None and config.geometry == "auto"
-    return _Whole(listen, usual.of(config, training), fit, usual.candidate, asked_first)
+    seconds, undecided = usual.of(config, training), config.geometry == "auto"
+    return _Whole(listen, seconds, fit, usual.candidate, undecided)
 
 
 class _Whole:
-    """Shares never fall: what is told too late or out of order changes nothing."""
+    """Shares never fall: what is told too late or out of order changes nothing.
+
+    Where triangles may be enough they are made first, and have half of the bar; networks that are
+    looked at after all share what is left of it.
+    """
 
     def __init__(
         self,
@@ -84,14 +87,14 @@ class _Whole:
         seconds: Mapping[str, float],
         fit: _Fit,
         candidate: float,
-        asked_first: bool,
+        undecided: bool,
     ) -> None:
         total = sum(seconds.values())
         ends = [end / total for end in accumulate(seconds.values())]
         self._listen = listen
         self._spans = dict(zip(seconds, pairwise([0.0, *ends]), strict=True))
         self._fit, self._candidate = fit, candidate
-        self._asked_first, self._fitted = asked_first, False
+        self._undecided, self._fitted = undecided, False
         self._overall = 0.0
 
     def __call__(self, update: Progress) -> None:
@@ -99,6 +102,8 @@ class _Whole:
         self._listen(replace(update, overall=self._overall))
 
     def _share(self, update: Progress) -> float:
+        if self._undecided and (update.network or update.stage == "samples"):
+            self._go_on_with_networks()
         if update.network:
             self._fitted = True
             return _within(self._spans["networks"], self._fit.share(update))
@@ -108,9 +113,17 @@ class _Whole:
         return _within(self._spans.get(update.stage, (0.0, 0.0)), done)
 
     def _of_candidate(self, update: Progress) -> float:
-        fit_follows = self._asked_first and not self._fitted
-        last = self._spans["networks"][0] if fit_follows else 1.0
-        return _within((self._overall, last), self._candidate if update.step else 0.0)
+        span = self._overall, 0.5 if self._undecided else 1.0
+        return _within(span, self._candidate if update.step else 0.0)
+
+    def _go_on_with_networks(self) -> None:
+        self._undecided = False
+        start = self._spans["samples"][0]
+        left = (1 - max(self._overall, start)) / (1 - start)
+        moved = {
+            name: (1 - left * (1 - a), 1 - left * (1 - b)) for name, (a, b) in self._spans.items()
+        }
+        self._spans = moved
 
 
 class _Fit:

@@ -6,6 +6,8 @@ simplified triangles exactly as into the extracted ones, and every UV is still t
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
 from nispcodec.core.arrays import Float64Array
@@ -79,19 +81,20 @@ def simplest(
     """The surface with about as few triangles as keep its deviation within `error`.
 
     Fewer and fewer are tried, as many as the last ones' deviation foretells; where those are too
-    few, more. Simplifying what is simple already takes little time. There are never many more than
+    few, more. Simplifying what is simple already takes little time. There are hardly more than
     `most` after seams are cut, whatever the deviation.
     """
     whole = len(surface.faces)
-    bare = whole if most is None else int(config.bare * most)
-    fewest, share = surface, bare / whole if bare < whole else config.first
+    bare = math.inf if most is None else config.bare * most
+    bounded = bare < config.close * whole
+    fewest, share = surface, bare / whole if bounded else config.first
     while share < config.close:
         fewer = _collapsed(fewest, int(share * len(fewest.faces)), config)
         left = config.fitting * deviation(network, fewer, config.measured)
         foretold = (left / error) ** config.slope
         if len(fewer.faces) >= config.close * len(fewest.faces):
             break
-        if foretold <= 1 or len(fewest.faces) > bare:
+        if foretold <= 1 or (bounded and len(fewest.faces) > bare):
             fewest, share = fewer, max(foretold, config.shrinkage)
         else:
             share *= max(foretold, config.more)

@@ -37,6 +37,11 @@ class Tree:
         found = triangles.closest(points)
         return Hits(which[found.faces], found.weights, found.positions)
 
+    @property
+    def is_flat(self) -> bool:
+        """Whether no triangle has an area: then there is no closest point."""
+        return not len(self._which)
+
     @cached_property
     def normals(self) -> Float64Array:
         """(m, 3): unit normals of the faces; 0 for one without area."""
@@ -56,11 +61,14 @@ class Tree:
 
     @cached_property
     def _solid(self) -> tuple[Int64Array, NearestTriangles]:
+        return self._which, NearestTriangles(self.corners[self._which])
+
+    @cached_property
+    def _which(self) -> Int64Array:
         # Faces without area have no normal that tells on which side of them one is.
         edges = self.corners - np.roll(self.corners, 1, axis=1)
         longest = np.square(edges).sum(axis=2).max(axis=1)
-        which = np.flatnonzero(2 * self.areas > FLAT * longest)
-        return which, NearestTriangles(self.corners[which])
+        return np.flatnonzero(2 * self.areas > FLAT * longest)
 
 
 FLAT = 1e-7

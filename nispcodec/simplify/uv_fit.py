@@ -21,8 +21,10 @@ def fitted_uvs(
 ) -> Triangles:
     """The same triangles with other UVs: least squares, reweighed towards the mean of misses.
 
-    No UV triangle turns over.
+    No UV triangle turns over. Where no triangle has an area left, as on coarse grids, UVs stay.
     """
+    if Tree(triangles.corners).is_flat:
+        return triangles
     pairs = _pairs(source, triangles, config, np.random.default_rng([seed, 1]))
     if not len(pairs.weights):
         return triangles

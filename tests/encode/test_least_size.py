@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import pytest
 
@@ -10,12 +11,19 @@ import nispcodec
 from nispcodec import EncodeConfig, NispModel, TexturedMesh
 from nispcodec.core.errors import TargetSizeError
 from nispcodec.core.progress import silent
+from nispcodec.encode.config import FormConfig
 from nispcodec.format import pack
+from nispcodec.simplify.config import FitConfig, LadderConfig
 from tests.encode.tunings import small
 from tests.geometry.shapes import box_asset, soup, sphere
 
 pytestmark = pytest.mark.slow
-SHORT = small(3000, 60, 1, 100, 30, lambda_=1e-6)
+FORMS = FormConfig(
+    measured_faces=20_000,
+    size_trials=2,
+    ladder=LadderConfig(samples=2000, fit=FitConfig(rounds=2, uv_rounds=2, fewest=1000)),
+)
+SHORT = replace(small(3000, 60, 1, 100, 30, lambda_=1e-6), forms=FORMS)
 
 
 def ball() -> TexturedMesh:

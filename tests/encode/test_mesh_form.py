@@ -22,7 +22,7 @@ CONFIG = FormConfig()
 
 @pytest.fixture(scope="module")
 def ball() -> MeshForm:
-    return MeshForm(analyze(soup(sphere(16))), 0, CONFIG, silent)
+    return MeshForm(analyze(soup(sphere(12))), 0, CONFIG, silent)
 
 
 @pytest.fixture(scope="module")
@@ -106,7 +106,7 @@ def test_errors_of_a_document_are_those_of_what_it_decodes_to(ball: MeshForm) ->
 
 def test_materials_that_changed_places_are_another_color() -> None:
     one, other = Material("white"), Material("red", base_color=(1.0, 0.0, 0.0, 1.0))
-    ball = soup(sphere(16))
+    ball = soup(sphere(8))
     above = (ball.positions[ball.faces][..., 2].mean(axis=1) > 0).astype(np.int32)
     asset = replace(ball, materials=(one, other), face_materials=above)
     form = MeshForm(analyze(asset), 0, CONFIG, silent)

@@ -13,11 +13,11 @@ CONFIG = FormConfig()
 
 @pytest.fixture(scope="module")
 def ball() -> MeshForm:
-    return MeshForm(analyze(soup(sphere(16))), 0, CONFIG, silent)
+    return MeshForm(analyze(soup(sphere(12))), 0, CONFIG, silent)
 
 
 def test_the_more_bytes_the_nearer_and_nearly_all_are_used(ball: MeshForm) -> None:
-    sizes = (420, 600, 1200)
+    sizes = (400, 600, 1200)
     found = [ball.of_size(most) for most in sizes]
     shares = [each.size / most for each, most in zip(found, sizes, strict=True)]
     assert all(0.9 < share <= 1 for share in shares)

@@ -81,7 +81,8 @@ def test_each_stage_is_further_than_the_one_before(geometry: str) -> None:
 
 def test_candidates_go_on_without_an_end_as_nobody_knows_how_many_there_will_be() -> None:
     made = [Progress(stage="triangles", step=step) for step in range(30)]
-    shares = overall([Progress(stage="probe triangles", step=1, steps=4), *made])
+    before = [Progress(stage="samples"), Progress(stage="probe triangles", step=1, steps=4)]
+    shares = overall([*before, *made])[1:]
     assert shares[1:] == sorted(set(shares[1:]))
     assert 0.95 < shares[-1] < 1
 
@@ -92,12 +93,13 @@ def test_triangles_that_are_looked_at_after_a_fit_go_on_too() -> None:
     assert shares == sorted(set(shares))
 
 
-def test_triangles_that_are_asked_for_before_a_fit_leave_it_its_share() -> None:
-    made = [Progress(stage="triangles", step=step) for step in range(30)]
-    shares = overall([*made, fit("sdf", 0.1), *made], EncodeConfig(target_size=1e4))
+def test_networks_that_are_looked_at_after_triangles_share_what_is_left() -> None:
+    made = [Progress(stage="triangles", step=step) for step in range(1, 30)]
+    networks = [Progress(stage="samples"), fit("sdf", 0.1), fit("sdf", 0.2), fit("sdf", 1)]
+    shares = overall([*made, *networks, *made])
     assert shares == sorted(shares)
-    before, after = shares[len(made) - 1 : len(made) + 1]
-    assert before < after < 0.5 < shares[-1]
+    first, last = shares[len(made) - 1], shares[len(made) + 3]
+    assert 0.45 < first < 0.5 < shares[len(made) + 1] < shares[len(made) + 2] < 0.7 < last < 1
 
 
 def test_every_network_moves_the_whole() -> None:

@@ -69,7 +69,13 @@ def test_no_more_are_left_than_allowed_whatever_the_error(ball: Network, surface
     assert 800 < len(bounded.faces) <= 1000
     assert_closed(bounded.faces)
     # Where the error lets fewer, there are fewer.
-    assert len(simplest(ball, surface, 2e-3, 1000).faces) < 800
+    assert len(simplest(ball, surface, 4e-3, 1000).faces) < len(bounded.faces)
+
+
+def test_a_bound_beside_all_triangles_is_none(ball: Network, surface: Surface) -> None:
+    beside = round(1.08 * len(surface.faces))
+    bounded, free = (simplest(ball, surface, 2e-3, most) for most in (beside, None))
+    assert len(bounded.faces) == len(free.faces) < len(surface.faces) / 2
 
 
 def test_fins_go_and_everything_else_stays() -> None:

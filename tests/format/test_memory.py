@@ -78,6 +78,7 @@ def test_bombs(name: str) -> None:
     assert peak(data) <= 2 * len(data) + MAX_MEMORY
 
 
+@pytest.mark.slow
 def test_malformed_files_take_no_more() -> None:
     for case in all_malformed():
         assert peak(case.data) <= 2 * len(case.data) + MAX_MEMORY, case.name

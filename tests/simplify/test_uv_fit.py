@@ -47,3 +47,9 @@ def test_no_uv_triangle_turns_over() -> None:
 def test_without_uvs_nothing_happens() -> None:
     source = Source(bare_ball())
     assert fitted_uvs(source, source.triangles, SMALL_FIT) is source.triangles
+
+
+def test_of_triangles_without_area_uvs_stay() -> None:
+    source = Source(ball())
+    flat = replace(ball(), positions=np.zeros_like(ball().positions))
+    assert fitted_uvs(source, flat) is flat
