@@ -98,7 +98,8 @@ class Choice:
         forms = self._forms
         if self._form.least_cost > forms.surely_best:
             return False
-        found = self._wanted()
+        most = math.exp(forms.surely_best - forms.foreseen_cost(1.0, 0.0))
+        found = self._form.best(self._nearest, most)
         return (
             forms.is_sound(found.errors)
             and forms.cost(found.size, found.errors) <= forms.surely_best
@@ -285,15 +286,10 @@ class Choice:
                 )
             return found
         if not config.target_size:
-            return self._best
+            return self._form.best(self._nearest, self._worth * self._field_bytes or math.inf)
         if self._triangle_bytes > config.target_size:
             raise TargetSizeError(self._triangle_bytes, config.target_size)
         return self._of_target_size
-
-    @cached_property
-    def _best(self) -> Candidate:
-        """The best triangles, where no target is set."""
-        return self._form.best(self._nearest, self._worth * self._field_bytes or math.inf)
 
     @property
     def _nearest(self) -> float:
