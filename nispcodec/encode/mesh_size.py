@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from bisect import bisect_right
-from functools import cache
 
 from nispcodec.core.mesh_part import MAX_GRID_BITS
 from nispcodec.encode.config import FormConfig
@@ -35,7 +34,6 @@ def _whole(simplifier: Simplifier, most_bytes: float, config: FormConfig) -> Can
     bits = simplifier.bits_for(config.negligible, whole=True)
     uv_bits = simplifier.uv_bits_for(config.negligible_uv)
 
-    @cache
     def made(more: tuple[int, int]) -> Candidate:
         finer = (bits + more[0], uv_bits + more[1])
         return simplifier.candidate(everything, *(min(max(1, b), MAX_GRID_BITS) for b in finer))

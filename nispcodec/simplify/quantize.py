@@ -55,10 +55,6 @@ class Grid:
         """(n, d) int32: the nearest."""
         return np.rint((numbers - self.origin) / self.step).astype(np.int32)
 
-    def rounded(self, numbers: Float64Array) -> Float64Array:
-        """(n, d): the numbers of the nearest integers."""
-        return self.integers(numbers) * self.step + self.origin
-
 
 def quantized(triangles: Triangles, bits: int, uv_bits: int) -> MeshPart:
     """The part of these triangles with so many bits a coordinate.
