@@ -157,6 +157,7 @@ RESULTS = (
         (*CORE, "nispcodec/geometry", "nispcodec/dataset"),
     ),
     CommittedResult("random_assets.json", "benchmarks.studies.random_assets", ENCODE),
+    CommittedResult("reading.json", "benchmarks.studies.reading", (*CORE, "nispcodec/io")),
     CommittedResult("sdf_grid.json", "benchmarks.studies.sdf_grid", ROUND_TRIP),
     CommittedResult("web_decoder.json", "benchmarks.studies.web_decoder", ("web",)),
     CommittedResult("web_pages.json", "benchmarks.studies.web_pages", ("web",)),

@@ -57,8 +57,9 @@ def duplicate_faces(mesh: TexturedMesh) -> BoolArray:
     first = np.argmin(corners[:, :, 0], axis=1)
     turned = np.take_along_axis(corners, ((first[:, None] + [0, 1, 2]) % 3)[:, :, None], axis=1)
     keys = np.hstack([turned.reshape(-1, 6), mesh.face_materials[:, None]])
-    repeated = np.ones(len(keys), dtype=bool)
-    repeated[np.unique(keys, axis=0, return_index=True)[1]] = False
+    order = np.lexsort(keys.T)  # stable: of equal ones the earliest comes first
+    repeated = np.zeros(len(keys), dtype=bool)
+    repeated[order[1:]] = (keys[order[1:]] == keys[order[:-1]]).all(axis=1)
     return repeated
 
 

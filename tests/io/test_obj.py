@@ -12,6 +12,7 @@ from nispcodec.core.asset import TexturedMesh
 from nispcodec.core.errors import MeshError
 from nispcodec.io.folder import Folder
 from nispcodec.io.read.obj import read_obj
+from nispcodec.io.read.wavefront import SHORTEST_RUN
 from tests.io.files import TRIANGLE, load_obj, outcome
 
 NOWHERE = Folder(Path("/nonexistent"))
@@ -157,6 +158,41 @@ STATEMENTS = st.lists(
 def test_any_bytes_give_a_mesh_or_a_mesh_error(data: bytes) -> None:
     found = outcome(read, data)
     assert isinstance(found, TexturedMesh) or str(found).startswith("a.obj:")
+
+
+WORDS = {
+    "v": ["0", "1", ".5", "-2e3", "nan", "1e308", "x"],
+    "vt": ["0", "1", ".5", "nan", "x"],
+    "vn": ["0", "1", "-.5", "nan", "x"],
+    "f": ["1", "2/1", "3//2", "1/2/3", "2/", "2//", "-1", "-1/-2", "0", "9", "3//0", "f", "x"],
+}
+
+
+@st.composite
+def runs_of_lines(draw: st.DrawFn) -> str:
+    """Long runs of each statement, with a few lines among them that have another form."""
+    lines = [TRIANGLE + "vt 0 1\n" * 3 + "vn 0 1 0\n" * 3]
+    for keyword in draw(st.lists(st.sampled_from(sorted(WORDS)), min_size=1, max_size=6)):
+        plain = f"{keyword} " + {"f": "1/1/1 2/2 3"}.get(keyword, "0 1 .5") + "\n"
+        run = [plain] * draw(st.integers(SHORTEST_RUN - 1, SHORTEST_RUN + 4))
+        if draw(st.booleans()):
+            words = draw(st.lists(st.sampled_from(WORDS[keyword]), max_size=7))
+            end = draw(st.sampled_from(["\n", "\n", " \\\n", " \n", "\t\n"]))
+            run.insert(draw(st.integers(0, len(run))), " ".join([keyword, *words]) + end)
+        lines += [*run, "s 2\n" if draw(st.booleans()) else "o b\n"]
+    return "".join(lines)
+
+
+@given(runs_of_lines())
+def test_many_lines_at_once_are_read_as_each_alone(text: str) -> None:
+    # Lines with comments are read one by one.
+    at_once, alone = outcome(read, text), outcome(read, text.replace("\n", " #\n"))
+    if isinstance(alone, MeshError):
+        assert str(at_once) == str(alone)
+        return
+    for name in ("positions", "faces", "uvs", "uv_faces", "face_materials", "creases"):
+        np.testing.assert_array_equal(getattr(at_once, name), getattr(alone, name), name)
+    assert at_once.warnings == alone.warnings
 
 
 def test_names_of_any_encoding(tmp_path: Path) -> None:

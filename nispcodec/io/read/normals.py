@@ -29,14 +29,12 @@ def with_creases(
     flat = np.repeat(face_normals(mesh.corners)[:, None], 3, axis=1)
     own = np.divide(normals, lengths, out=flat, where=usable).reshape(-1, 3)
     pairs = mine, other = side_pairs(places)
-    same = (places.ravel()[mine] == places.ravel()[other])[:, None]
+    same = places.ravel()[mine] == places.ravel()[other]
     after_mine, after_other = (each - each % 3 + (each + 1) % 3 for each in pairs)
-    first, second = (
-        np.where(same, own[other], own[after_other]),
-        np.where(same, own[after_other], own[other]),
-    )
-    cosines = np.minimum((own[mine] * first).sum(axis=1), (own[after_mine] * second).sum(axis=1))
-    alike = cosines >= np.cos(ALIKE)
+    first, second = np.where(same, other, after_other), np.where(same, after_other, other)
+    ends = ((mine, first), (after_mine, second))
+    cosines = (np.einsum("ki,ki->k", own[one], own[two]) for one, two in ends)
+    alike = np.minimum(*cosines) >= np.cos(ALIKE)
     if groups is not None:
         one, two = mine // 3, other // 3
         alike |= bare[one] & bare[two] & (groups[one] == groups[two]) & (groups[one] > 0)

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import math
+import re
 from array import array
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from itertools import chain, count, repeat
 
 import numpy as np
 
@@ -24,6 +26,9 @@ _SILENT = frozenset(
     b"o g mg lod shadow_obj trace_obj usemap maplib bevel c_interp d_interp".split()
 )
 _LARGEST_INDEX = 2**31 - 1
+# A corner whose indices count from the file's start, and are none too large.
+_PLAIN = rb"([1-9]\d{0,8})"
+_PLAIN_CORNER = re.compile(rb"%b(?:/%b?(?:/%b?)?)?" % (_PLAIN, _PLAIN, _PLAIN))
 
 
 def read_obj(data: bytes, name: str, folder: Folder) -> TexturedMesh:
@@ -49,10 +54,9 @@ class _Statements:
         self.line = 0
         self.positions = array("d")
         self.uvs = array("d")
-        self.corners = array("q")
-        self.corner_uvs = array("q")
         self.normals = array("d")
-        self.corner_normals = array("q")
+        self.different_corners = array("q")  # position, UV and normal of each
+        self.corners = array("q")  # of all faces, which of the different ones
         self.smoothing = array("q")
         self.smoothed = False
         self.sizes = array("q")
@@ -64,10 +68,8 @@ class _Statements:
         self._material = ""
         self._group = 0
         # Most corners come up in several faces: half the parsing time saved.
-        self._known_corners: dict[bytes, tuple[int, int, int]] = {}
-
-    def parse(self, data: bytes) -> None:
-        handlers: dict[bytes, Callable[[bytes], None]] = {
+        self._known_corners: dict[bytes, int] = {}
+        self._handlers: dict[bytes, Callable[[bytes], None]] = {
             b"v": self._position,
             b"vt": self._uv,
             b"vn": self._normal,
@@ -77,13 +79,34 @@ class _Statements:
             b"usemtl": self._use_material,
             b"mtllib": self._library,
         }
-        for self.line, line in wavefront.logical_lines(data):
-            keyword = line.split(None, 1)[0]
-            handler = handlers.get(keyword)
-            if handler is not None:
-                handler(line)
-            elif keyword not in _SILENT:
-                self._leave_out(f"statement {wavefront.text(keyword[:32])!r}")
+        self._run_handlers: dict[bytes, Callable[[Sequence[bytes]], bool]] = {
+            b"v ": self._position_run,
+            b"vt": self._uv_run,
+            b"vn": self._normal_run,
+            b"f ": self._face_run,
+        }
+
+    def parse(self, data: bytes) -> None:
+        for first, beginning, lines in wavefront.runs(data):
+            self.line = first
+            at_once = self._run_handlers.get(beginning)
+            if at_once is None or not at_once(lines):
+                for self.line, line in wavefront.joined(lines, first):
+                    self._parse_line(line)
+
+    def _parse_line(self, line: bytes) -> None:
+        keyword = line.split(None, 1)[0]
+        handler = self._handlers.get(keyword)
+        if handler is not None:
+            handler(line)
+        elif keyword not in _SILENT:
+            self._leave_out(f"statement {wavefront.text(keyword[:32])!r}")
+
+    def corner_indices(self) -> tuple[Int64Array, Int64Array, Int64Array]:
+        """Position, UV and normal (n,) of every corner of every face."""
+        position, uv, normal = _integers(self.different_corners).reshape(-1, 3).T
+        corners = _integers(self.corners)
+        return position[corners], uv[corners], normal[corners]
 
     def warnings(self) -> list[str]:
         return [
@@ -139,25 +162,28 @@ class _Statements:
             self._leave_out("faces of fewer than three corners")
             return
         for word in words:
-            position, uv, normal = self._known_corners.get(word) or self._corner(word)
-            self.corners.append(position)
-            self.corner_uvs.append(uv)
-            self.corner_normals.append(normal)
+            known = self._known_corners.get(word)
+            self.corners.append(self._corner(word) if known is None else known)
         self.sizes.append(len(words))
         self.smoothing.append(self._group)
         self.face_lines.append(self.line)
-        self.face_materials.append(self.materials.setdefault(self._material, len(self.materials)))
+        self.face_materials.append(self._material_number())
 
-    def _corner(self, word: bytes) -> tuple[int, int, int]:
-        """Position, UV and normal of "1", "1/2", "1//3" or "1/2/3"."""
+    def _material_number(self) -> int:
+        return self.materials.setdefault(self._material, len(self.materials))
+
+    def _corner(self, word: bytes) -> int:
+        """The number of a corner "1", "1/2", "1//3" or "1/2/3" of position, UV and normal."""
         parts = word.split(b"/")
         position = self._index(parts[0], len(self.positions) // 3)
         has_uv = len(parts) > 1 and parts[1]
         uv = self._index(parts[1], len(self.uvs) // 2) if has_uv else -1
-        corner = position, uv, self._normal_index(parts[2]) if len(parts) > 2 and parts[2] else -1
+        normal = self._normal_index(parts[2]) if len(parts) > 2 and parts[2] else -1
+        number = len(self.different_corners) // 3
+        self.different_corners.extend((position, uv, normal))
         if b"-" not in word:  # what counts back means something else in each face
-            self._known_corners[word] = corner
-        return corner
+            self._known_corners[word] = number
+        return number
 
     def _normal_index(self, word: bytes) -> int:
         """As `_index`; -1 for what is no index."""
@@ -182,6 +208,51 @@ class _Statements:
             f"found {wavefront.text(word[:32])!r}"
         )
 
+    # Many lines that begin alike, at once; False, and nothing done, where one has another form
+    # than most files have.
+
+    def _position_run(self, lines: Sequence[bytes]) -> bool:
+        rows = wavefront.table(lines, b"v", 3)
+        if rows is None:
+            return False
+        self.positions.frombytes(rows[:, :3].tobytes())
+        if rows.shape[1] > 5:
+            self._leave_out("vertex colors")
+        return True
+
+    def _uv_run(self, lines: Sequence[bytes]) -> bool:
+        rows = wavefront.table(lines, b"vt", 2)
+        if rows is not None:
+            self.uvs.frombytes(rows[:, :2].tobytes())
+        return rows is not None
+
+    def _normal_run(self, lines: Sequence[bytes]) -> bool:
+        rows = wavefront.table(lines, b"vn", 3)
+        if rows is not None:
+            self.normals.frombytes(rows[:, :3].tobytes())
+        return rows is not None
+
+    def _face_run(self, lines: Sequence[bytes]) -> bool:
+        words = b" ".join(lines).split()
+        new = list(set(words) - self._known_corners.keys() - {b"f"})
+        plain = [match.groups(b"0") for match in map(_PLAIN_CORNER.fullmatch, new) if match]
+        if len(plain) < len(new):
+            return False
+        self._known_corners.update(zip(new, count(len(self.different_corners) // 3)))
+        self.different_corners.extend(int(index) - 1 for index in chain.from_iterable(plain))
+        numbers = map(self._known_corners.get, words, repeat(-1))
+        corners = np.fromiter(numbers, np.int64, len(words))
+        starts = np.flatnonzero(corners < 0)
+        sizes = np.diff(starts, append=len(words)) - 1
+        if len(starts) != len(lines) or sizes.min() < 3:
+            return False
+        self.corners.frombytes(corners[corners >= 0].tobytes())
+        self.sizes.frombytes(sizes.tobytes())
+        self.smoothing.extend(repeat(self._group, len(lines)))
+        self.face_lines.extend(range(self.line, self.line + len(lines)))
+        self.face_materials.extend(repeat(self._material_number(), len(lines)))
+        return True
+
     def _use_material(self, line: bytes) -> None:
         self._material = wavefront.rest(line)
 
@@ -195,8 +266,7 @@ def _assemble(
     positions = _rows(statements.positions, 3)
     uvs = _rows(statements.uvs, 2)
     sizes = _integers(statements.sizes)
-    corners = _integers(statements.corners)
-    corner_uvs = _integers(statements.corner_uvs)
+    corners, corner_uvs, corner_normals = statements.corner_indices()
     _expect_indices(statements, corners, len(positions))
     corner_uvs = _known_uvs(statements, corner_uvs, len(uvs), warnings)
     triangles, owner = triangulate(positions[corners], sizes)
@@ -207,7 +277,7 @@ def _assemble(
     placements = [materials.placement(name) for name in names]
     uvs, placed = _placed(uvs, uv_faces.astype(np.int64), face_materials, placements)
     uvs, placed = without_unusable(uvs, placed, statements.name, warnings)
-    _warn_of_normals(statements, warnings)
+    _warn_of_normals(statements, corner_normals, warnings)
     mesh = TexturedMesh(
         positions=positions,
         faces=corners[triangles].astype(np.int32),
@@ -218,11 +288,13 @@ def _assemble(
         textures=tuple(materials.textures),
         warnings=tuple(warnings),
     )
-    return _creased(mesh, statements, triangles, owner)
+    return _creased(mesh, statements, corner_normals[triangles], owner)
 
 
-def _warn_of_normals(statements: _Statements, warnings: list[str]) -> None:
-    beyond = _integers(statements.corner_normals) >= len(statements.normals) // 3
+def _warn_of_normals(
+    statements: _Statements, corner_normals: Int64Array, warnings: list[str]
+) -> None:
+    beyond = corner_normals >= len(statements.normals) // 3
     if beyond.any():
         warnings.append(
             f"{statements.name}: {beyond.sum()} corners name a normal that is not there"
@@ -230,10 +302,12 @@ def _warn_of_normals(statements: _Statements, warnings: list[str]) -> None:
 
 
 def _creased(
-    mesh: TexturedMesh, statements: _Statements, triangles: Int64Array, owner: Int64Array
+    mesh: TexturedMesh, statements: _Statements, numbers: Int64Array, owner: Int64Array
 ) -> TexturedMesh:
-    """With the creases of the file's normals and smoothing groups, if it has any."""
-    numbers = _integers(statements.corner_normals)[triangles]
+    """With the creases of the file's normals and smoothing groups, if it has any.
+
+    numbers: (m, 3) of the corners' normals; changed where there are none of that number.
+    """
     rows = _rows(statements.normals, 3)
     numbers[numbers >= len(rows)] = -1
     if not statements.smoothed and (numbers < 0).all():

@@ -6,8 +6,12 @@ import codecs
 import math
 import re
 from collections.abc import Iterator, Sequence
-from itertools import islice
+from itertools import groupby, islice
+from operator import itemgetter
 
+import numpy as np
+
+from nispcodec.core.arrays import Float64Array
 from nispcodec.core.errors import MeshError
 
 _COMMENT = re.compile(rb"(?:^|\s)#.*")
@@ -20,6 +24,14 @@ _NOT_FINITE = re.compile(rb"[+-]?(?:nan(?:\(\w*\))?|inf(?:inity)?|1\.#\w+)", re.
 # More "#" in a line than this belong to no name.
 MOST_SIGNS = 8
 BYTE_ORDER_MARK = b"\xef\xbb\xbf"
+# A backslash with nothing after it, but for a comment: the line goes on in the next.
+_GOES_ON = re.compile(rb"\\[^\S\n]*(?:#.*)?$", re.MULTILINE)
+# Lines that begin alike are read at once from so many on.
+SHORTEST_RUN = 16
+# And so many at most: words take far more memory than their text.
+LONGEST_RUN = 1 << 16
+# Coordinates beyond this are no finite numbers when they are added.
+_LARGEST = 1e300
 _WIDE_MARKS = (codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)
 
 
@@ -29,22 +41,71 @@ def logical_lines(data: bytes) -> Iterator[tuple[int, bytes]]:
     A line that was continued has the number of its first part. A statement that ends in a name
     keeps what follows "#": whether that is a comment only `names` can tell.
     """
-    if data.startswith(_WIDE_MARKS):  # as PowerShell writes text
-        data = data.decode("utf-16", errors="replace").encode()
-    data = data.removeprefix(BYTE_ORDER_MARK).replace(b"\r\n", b"\n").replace(b"\r", b"\n")
+    return joined(_normal(data).split(b"\n"), 1)
+
+
+def runs(data: bytes) -> Iterator[tuple[int, bytes, list[bytes]]]:
+    """All lines of a file in order, in parts that `joined` can read alone.
+
+    Gives the number of a part's first line; the two bytes that all of its lines begin with, none
+    where they do not begin alike, or are few; and the lines.
+    """
+    data = _normal(data)
+    lines = data.split(b"\n")
+    read = end = 0
+    for beginning, alike in () if _GOES_ON.search(data) else groupby(lines, itemgetter(slice(2))):
+        start, end = end, end + len(list(alike))
+        if end - start < SHORTEST_RUN:
+            continue
+        if start > read:
+            yield read + 1, b"", lines[read:start]
+        for first in range(start, end, LONGEST_RUN):
+            yield first + 1, beginning, lines[first : min(first + LONGEST_RUN, end)]
+        read = end
+    yield read + 1, b"", lines[read:]
+
+
+def joined(lines: Sequence[bytes], number: int) -> Iterator[tuple[int, bytes]]:
+    """As `logical_lines`, of lines of a file of which the first has a `number`."""
     parts: list[bytes] = []
-    for number, raw in enumerate([*data.split(b"\n"), b""], 1):
+    for place, raw in enumerate([*lines, b""], number):
         commented = b"#" in raw and not _NAMING.match(raw)
         line = (_COMMENT.sub(b"", raw) if commented else raw).strip()
         if line.endswith(b"\\"):
             parts.append(line[:-1])
             continue
-        first = number - len(parts)
+        first = place - len(parts)
         if parts:
             line = b" ".join([*parts, line]).strip()
             parts = []
         if line:
             yield first, line
+
+
+def table(lines: Sequence[bytes], keyword: bytes, least: int) -> Float64Array | None:
+    """(lines, n) finite numbers after the `keyword` of each line, n at least `least`.
+
+    None where the lines have any other form.
+    """
+    words = b" ".join(lines).split()
+    width = len(lines[0].split())
+    if len(words) != width * len(lines) or width <= least:
+        return None
+    if words[::width].count(keyword) != len(lines):
+        return None
+    del words[::width]
+    try:
+        values = np.fromiter(map(float, words), np.float64, len(words))
+    except ValueError:
+        return None
+    return values.reshape(len(lines), -1) if np.abs(values).max() < _LARGEST else None
+
+
+def _normal(data: bytes) -> bytes:
+    """The text of a file with line feeds alone, without its mark."""
+    if data.startswith(_WIDE_MARKS):  # as PowerShell writes text
+        data = data.decode("utf-16", errors="replace").encode()
+    return data.removeprefix(BYTE_ORDER_MARK).replace(b"\r\n", b"\n").replace(b"\r", b"\n")
 
 
 def text(raw: bytes) -> str:
