@@ -43,7 +43,7 @@ _CONVERTED = (
 # First bytes of formats that assets come with and that no reader here knows.
 _UNSUPPORTED = {
     b"v/1\x01": "an OpenEXR",
-    b"#?RADIANCE": "a Radiance",
+    b"#?R": "a Radiance",
     b"\xabKTX 11": "a KTX 1",
     b"<svg": "an SVG",
 }
@@ -52,7 +52,8 @@ _BEFORE_XML = re.compile(rb"^(\xef\xbb\xbf)?(\s+|<[?!][^>]*>)*")
 _START_OF_JPEG, _END_OF_JPEG = b"\xff\xd8", b"\xff\xd9"
 # Pillow's modes that PNG holds as they are; wide gray is narrowed, others become RGBA.
 _PNG_MODES = ("1", "L", "LA", "RGB", "RGBA", "P", "I;16")
-_BITS, _SAMPLE_FORMAT, _SIGNED = 258, 339, 2  # of TIFF
+_BITS, _PHOTOMETRIC, _SAMPLE_FORMAT = 258, 262, 339  # of TIFF
+_WHITE_IS_ZERO, _SIGNED = 0, 2
 
 
 class TextureShelf:
@@ -159,7 +160,7 @@ def _decoded(data: bytes, place: str) -> PIL.Image.Image:
 def _as_png(image: PIL.Image.Image, place: str) -> bytes:
     if image.mode == "LAB":  # Pillow would take its numbers for RGB
         raise MeshError(f"{place}: expected an image in RGB or gray, found one in L*a*b*")
-    if image.mode in ("I", "F"):
+    if image.mode in ("I", "F") or image.mode.startswith("I;16"):
         image = PIL.Image.fromarray(_gray_16(image))
     buffer = io.BytesIO()
     with _pillow(place):
@@ -169,15 +170,16 @@ def _as_png(image: PIL.Image.Image, place: str) -> bytes:
 
 def _gray_16(image: PIL.Image.Image) -> Uint16Array:
     """Gray of a wide type in 16 bits: the whole range of integers, 0 to 1 of floats."""
-    values = np.asarray(image)
+    values, tags = np.asarray(image), getattr(image, "tag_v2", {})
     if image.mode == "F":
         shares = np.nan_to_num(values.astype(np.float64), nan=0.0)
     else:
-        tags = getattr(image, "tag_v2", {})
         bits, signed = tags.get(_BITS, (16,))[0], tags.get(_SAMPLE_FORMAT, (1,))[0] == _SIGNED
         # Pillow keeps all integers as signed ones of 32 bits.
         integers = values if signed else values.astype(np.int64) % 2**32
         shares = integers / (2.0 ** (bits - signed) - 1)
+    if tags.get(_PHOTOMETRIC) == _WHITE_IS_ZERO:  # which Pillow heeds in narrow types alone
+        shares = 1.0 - shares
     return np.rint(np.clip(shares, 0.0, 1.0) * 65535).astype(np.uint16)
 
 

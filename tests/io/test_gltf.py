@@ -518,6 +518,27 @@ def test_what_is_lost_is_said(tmp_path: Path) -> None:
     assert mesh.positions[0].tolist() == [0, 0, 0]
 
 
+def test_extensions_that_nobody_reads_are_said(tmp_path: Path) -> None:
+    gltf = one_triangle()
+    gltf.json["extensionsUsed"] = [
+        "ACME_magic",
+        "KHR_materials_variants",
+        "KHR_materials_clearcoat",
+        "KHR_texture_transform",
+    ]
+    assert gltf.load(tmp_path).warnings == (
+        "a.glb: left out extension 'ACME_magic'",
+        "a.glb: left out extension 'KHR_materials_variants'",
+    )
+
+
+@pytest.mark.parametrize("name", ["KHR_xmp_json_ld", "KHR_animation_pointer"])
+def test_extensions_that_change_nothing_at_rest_may_be_required(tmp_path: Path, name: str) -> None:
+    gltf = one_triangle()
+    gltf.json["extensionsUsed"] = gltf.json["extensionsRequired"] = [name]
+    assert gltf.load(tmp_path).warnings == ()
+
+
 def broken(change: str) -> bytes:
     """A document spoilt in one place."""
     gltf = textured()
@@ -582,13 +603,24 @@ def test_errors_name_the_place(change: str, expected: str) -> None:
     assert expected in str(caught.value)
 
 
-def test_texture_coordinates_that_are_too_few_cost_themselves_alone(tmp_path: Path) -> None:
+@pytest.mark.parametrize(
+    ("name", "rows", "said"),
+    [
+        ("TEXCOORD_0", UVS[:2], "attributes: expected 3 of TEXCOORD_0, found 2: left out"),
+        ("TEXCOORD_0", [[0, 0, 0]] * 3, "expected type VEC2, found 'VEC3': TEXCOORD_0 left out"),
+        ("NORMAL", [[0, 0, 1]] * 2, "attributes: expected 3 of NORMAL, found 2: left out"),
+        ("NORMAL", [[0, 1]] * 3, "expected type VEC3, found 'VEC2': NORMAL left out"),
+    ],
+)
+def test_an_attribute_that_does_not_fit_costs_itself_alone(
+    tmp_path: Path, name: str, rows: list[list[float]], said: str
+) -> None:
     gltf = textured()
     primitive = gltf.json["meshes"][0]["primitives"][0]
-    primitive["attributes"]["TEXCOORD_0"] = gltf.accessor(UVS[:2])
+    primitive["attributes"][name] = gltf.accessor(rows)
     mesh = gltf.load(tmp_path)
-    assert not mesh.has_uv.any()
-    assert "attributes: expected 3 texture coordinates, found 2: left out" in mesh.warnings[0]
+    assert mesh.has_uv.all() == (name == "NORMAL")
+    assert said in mesh.warnings[0]
 
 
 @pytest.mark.parametrize(

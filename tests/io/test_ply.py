@@ -57,6 +57,13 @@ def test_triangle_strips(body: str) -> None:
     assert mesh.faces.tolist() == [[0, 1, 2], [1, 3, 2]]
 
 
+def test_strips_beside_an_empty_table_of_faces() -> None:
+    strips = "element tristrips 1\nproperty list int int vertex_indices\n"
+    mesh = read(text(VERTEX + FACE.format(0) + strips, SQUARE + "4 0 1 3 2\n"))
+    assert mesh.faces.tolist() == [[0, 1, 3], [1, 2, 3]]
+    assert mesh.warnings == ()
+
+
 def test_strips_one_after_the_other_begin_anew() -> None:
     strips = "element tristrips 2\nproperty list int int vertex_indices\n"
     mesh = read(text(VERTEX + strips, SQUARE + "7 0 1 2 -1 3 2 1\n3 1 2 3"))
@@ -73,7 +80,8 @@ def test_a_strip_longer_than_any_polygon() -> None:
 
 
 @pytest.mark.parametrize(
-    ("owner", "name"), [("vertex", "red"), ("vertex", "diffuse_red"), ("face", "red")]
+    ("owner", "name"),
+    [("vertex", "red"), ("vertex", "diffuse_red"), ("vertex", "ambient_red"), ("face", "red")],
 )
 def test_colors_are_left_out_by_name(owner: str, name: str) -> None:
     color = f"property uchar {name}\n"
@@ -111,9 +119,10 @@ def test_an_unreadable_image_is_left_out(tmp_path: Path) -> None:
     assert "w.png: expected an image" in read(data, Folder(tmp_path)).warnings[0]
 
 
-def test_a_face_with_unusable_uvs_has_none() -> None:
+@pytest.mark.parametrize("unusable", ["nan", "inf", "-nan(ind)", "1.#QNAN"])
+def test_a_face_with_unusable_uvs_has_none(unusable: str) -> None:
     header = VERTEX + "property float s\nproperty float t\n" + FACE.format(2)
-    body = "0 0 0 0 0\n1 0 0 1 0\n1 1 0 1 1\n0 1 0 nan nan\n3 0 1 2\n3 0 2 3\n"
+    body = f"0 0 0 0 0\n1 0 0 1 0\n1 1 0 1 1\n0 1 0 0 {unusable}\n3 0 1 2\n3 0 2 3\n"
     mesh = read(text(header, body))
     assert mesh.has_uv.tolist() == [True, False]
     assert "texture coordinates of 1 face(s) are no finite numbers" in mesh.warnings[0]

@@ -3,6 +3,7 @@ from __future__ import annotations
 import struct
 from pathlib import Path
 
+import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -52,6 +53,7 @@ def test_stl(data: bytes) -> None:
         OFF.replace(b"OFF", b"COFF").replace(b" 0\n", b" 0 255 0 0 255\n"),
         OFF.replace(b"0 1 2 3", b"0 1 2 3 255 0 0"),
         OFF.replace(b"\n", b"\r\n"),
+        OFF.replace(b"OFF", b"off"),
     ],
 )
 def test_off(data: bytes) -> None:
@@ -93,7 +95,7 @@ def test_stl_errors_name_the_place(data: bytes, expected: str) -> None:
         (OFF.replace(b"4 1 0", b"999999999 1 0"), "a.off: expected 999999999 vertices, found 5"),
         (OFF.replace(b"4 1 0", b"4 2 0"), "expected 2 faces, found 1 before the end"),
         (OFF.replace(b"1 1 0\n", b"1 nan 0\n"), "a.off:6: expected 3 or more finite numbers"),
-        (OFF.replace(b"2 3\n", b"2 4\n"), "a.off:8: expected a count from 1"),
+        (OFF.replace(b"2 3\n", b"2 4\n"), "a.off:8: expected a count and"),
         (OFF.replace(b"2 3\n", b"2 -1\n"), "a.off:8: "),
         (OFF.replace(b"2 3\n", b"2\n"), "a.off:8: "),
         (OFF.replace(b"2 3\n", b"2 x\n"), "a.off:8: "),
@@ -111,6 +113,14 @@ def test_off_errors_name_the_line(data: bytes, expected: str) -> None:
     [
         (binary_stl(CORNERS) + b"\0\0", "left out 2 bytes after the facets"),
         (binary_stl(CORNERS).replace(b"\1\0\0\0", bytes(4), 1), "the header says 0 facets, 1 are"),
+        (
+            binary_stl(CORNERS).replace(b"\1\0\0\0", b"\xff" * 4, 1),
+            "the header says 4294967295 facets, 1 are",
+        ),
+        (
+            binary_stl(CORNERS, b"solid".ljust(80)).replace(b"\1\0\0\0", b"\xff" * 4, 1),
+            "the header says 4294967295 facets, 1 are",
+        ),
         (binary_stl(CORNERS)[:-1] + b"\x80", "left out facet colors"),
         (binary_stl(CORNERS, b"COLOR=\1\2\3\4"), "left out facet colors"),
     ],
@@ -122,8 +132,9 @@ def test_binary_stl_as_it_is_written(data: bytes, warning: str) -> None:
     assert warning in mesh.warnings[0]
 
 
-def test_text_stl_with_a_byte_order_mark() -> None:
-    assert stl(b"\xef\xbb\xbf" + TEXT_STL).corners.tolist() == [CORNERS]
+@pytest.mark.parametrize("encoding", ["utf-8-sig", "utf-16"])
+def test_text_stl_with_a_byte_order_mark(encoding: str) -> None:
+    assert stl(TEXT_STL.decode().encode(encoding)).corners.tolist() == [CORNERS]
 
 
 def test_off_texture_coordinates() -> None:
@@ -143,7 +154,7 @@ def test_off_texture_coordinates() -> None:
         (OFF.replace(b"1 0 0\n", b"1 0 0 255 0 0\n"), "vertex colors"),
         (OFF.replace(b"0 1 2 3", b"0 1 2 3 255 0 0"), "face colors"),
         (
-            OFF.replace(b"4 1 0", b"4 2 0").replace(b"4 0 1 2", b"2 0 1\n4 0 1 2"),
+            OFF.replace(b"4 1 0", b"4 3 0").replace(b"4 0 1 2", b"2 0 1\n0\n4 0 1 2"),
             "faces of fewer than three corners",
         ),
     ],
@@ -158,8 +169,19 @@ def test_the_keyword_of_off_may_be_missing() -> None:
     assert off(OFF.replace(b"OFF\n", b"")).corners.tolist() == off(OFF).corners.tolist()
 
 
-def test_normals_of_off_are_no_loss() -> None:
-    assert off(OFF.replace(b"OFF", b"NOFF").replace(b" 0\n", b" 0 0 0 1\n")).warnings == ()
+def test_normals_of_off_are_creases() -> None:
+    faces = b"3 0 1 2\n3 0 2 3\n"
+    rows = [b"0 0 0", b"1 0 0", b"1 1 0", b"0 1 1"]
+
+    def creases(normals: list[bytes]) -> object:
+        lines = [b"%b %b\n" % each for each in zip(rows, normals, strict=True)]
+        mesh = off(b"NOFF\n4 2 0\n" + b"".join(lines) + faces)
+        assert mesh.warnings == ()
+        return None if mesh.creases is None else mesh.creases.any()
+
+    assert creases([b"0 0 1"] * 4) is np.False_
+    assert creases([b"nan 0 0"] * 4) is np.True_
+    assert creases([b""] * 4) is np.True_
 
 
 @given(st.binary(max_size=60), st.integers(0, 150))

@@ -21,10 +21,10 @@ from nispcodec.io.read.gltf_meshopt import EXTENSIONS as MESHOPT
 from nispcodec.io.read.gltf_nodes import Shown, shown_meshes, skinned
 from nispcodec.io.read.normals import with_creases
 
+# The last three change nothing of what an asset looks like at rest.
 _READABLE = {
     "KHR_texture_transform",
     "KHR_mesh_quantization",
-    "KHR_lights_punctual",
     "EXT_texture_webp",
     "EXT_texture_avif",
     "EXT_mesh_gpu_instancing",
@@ -32,7 +32,11 @@ _READABLE = {
     "KHR_texture_basisu",
     DRACO,
     *MESHOPT,
+    "KHR_lights_punctual",
+    "KHR_animation_pointer",
+    "KHR_xmp_json_ld",
 }
+_MATERIAL, _VARIANTS = "KHR_materials_", "KHR_materials_variants"
 _TRIANGLES, _STRIP, _FAN = 4, 5, 6
 
 
@@ -62,13 +66,20 @@ def _expect_readable(root: Element) -> None:
     if not version.startswith("2."):
         root.fail("glTF version 2", version)
     for extension in root.texts("extensionsRequired"):
-        if extension not in _READABLE and not extension.startswith("KHR_materials_"):
+        if extension not in _READABLE and not extension.startswith(_MATERIAL):
             root.fail("only extensions that we can read", extension)
 
 
 def _things_left_out(root: Element) -> list[str]:
     kinds = {"animations": "animations", "skins": "skins, taking the bind pose"}
-    return [f"{root.file}: left out {what}" for key, what in kinds.items() if root.entries(key)]
+    left_out = [what for key, what in kinds.items() if root.entries(key)]
+    # Those of materials are named where a material has them.
+    left_out += [
+        f"extension {name!r}"
+        for name in dict.fromkeys(root.texts("extensionsUsed"))
+        if name not in _READABLE and (name == _VARIANTS or not name.startswith(_MATERIAL))
+    ]
+    return [f"{root.file}: left out {what}" for what in left_out]
 
 
 @dataclass
@@ -157,13 +168,30 @@ class _Scene:
 
         In the node's own frame: they are compared with each other.
         """
-        accessor = attributes.optional("NORMAL")
-        if accessor is None:
+        normals = self._rows(attributes, "NORMAL", 3, count)
+        if normals is None:
             return np.full((count, 3), np.nan, np.float32)
-        normals = self._buffers.numbers(accessor, 3, finite=False)
-        if len(normals) != count:
-            attributes.fail(f"{count} normals", len(normals))
         return normals.astype(np.float32)
+
+    def _rows(self, attributes: Element, name: str, width: int, count: int) -> Float64Array | None:
+        """(count, width) of an attribute; None, with a warning, where there are no such rows.
+
+        What an asset can do without is no reason to refuse it.
+        """
+        accessor = attributes.optional(name)
+        if accessor is None:
+            return None
+        try:
+            rows = self._buffers.numbers(accessor, width, finite=False)
+        except MeshError as why:
+            self._warn(f"{why}: {name} left out")
+            return None
+        if len(rows) != count:
+            self._warn(
+                f"{attributes.place}: expected {count} of {name}, found {len(rows)}: left out"
+            )
+            return None
+        return rows
 
     def _place_positions(self, primitive: Element, shown: Shown, number: int) -> tuple[int, int]:
         """First row and number of rows; primitives of a node often share an accessor."""
@@ -222,17 +250,11 @@ class _Scene:
     ) -> int | None:
         if attributes.get(f"TEXCOORD_{source.texcoord}") is None:
             source = self._other_source(attributes, source, material)
-        accessor = attributes.optional(f"TEXCOORD_{source.texcoord}")
-        if accessor is None:
+        name = f"TEXCOORD_{source.texcoord}"
+        stored = self._rows(attributes, name, 2, count)
+        if stored is None:
             return None
-        stored = self._buffers.numbers(accessor, 2, finite=False)
-        if len(stored) != count:
-            self._warn(
-                f"{attributes.place}: expected {count} texture coordinates, found {len(stored)}: "
-                f"left out"
-            )
-            return None
-        key = (accessor, source)
+        key = (attributes.integer(name), source)
         if key not in self._uvs.starts:
             uvs = source.apply(stored)
             self._uvs.add(key, np.column_stack([uvs[:, 0], 1.0 - uvs[:, 1]]))

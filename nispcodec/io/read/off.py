@@ -1,4 +1,4 @@
-"""OFF: polygons in text, with texture coordinates in STOFF."""
+"""OFF: polygons in text, with texture coordinates in STOFF and normals in NOFF."""
 
 from __future__ import annotations
 
@@ -15,15 +15,16 @@ from nispcodec.core.errors import MeshError
 from nispcodec.io.folder import Folder
 from nispcodec.io.read import wavefront
 from nispcodec.io.read.coordinates import without_unusable
+from nispcodec.io.read.normals import with_creases
 from nispcodec.io.read.polygons import triangulate
 
 Lines = Iterator[tuple[int, bytes]]
 
-_KEYWORD = re.compile(rb"(ST)?C?N?OFF")
+_KEYWORD = re.compile(rb"(ST)?C?N?OFF|off")
 
 
 def read_off(data: bytes, name: str, folder: Folder) -> TexturedMesh:
-    """Parse a text OFF file: positions, faces, and the texture coordinates of STOFF.
+    """Parse a text OFF file: positions, faces, texture coordinates of STOFF, normals of NOFF.
 
     OFF names no other files: `folder` is not looked at. Raises MeshError, naming the file `name`
     and the line, for a malformed file.
@@ -31,7 +32,7 @@ def read_off(data: bytes, name: str, folder: Folder) -> TexturedMesh:
     lines = wavefront.logical_lines(data)
     kind, vertices, faces = _head(lines, name)
     said = _LeftOut(name)
-    positions, uvs = _vertices(lines, vertices, kind, said)
+    positions, normals, uvs = _vertices(lines, vertices, kind, said)
     sizes, corners = [], []
     for number, line in _take(lines, faces, f"{name}: expected {faces} faces"):
         face, others = _face(line.split(), vertices, f"{name}:{number}")
@@ -46,7 +47,8 @@ def read_off(data: bytes, name: str, folder: Folder) -> TexturedMesh:
     if uvs is not None:
         used, uv_faces = without_unusable(uvs, indices[triangles], name, said.warnings)
         mesh = replace(mesh, uvs=used, uv_faces=uv_faces.astype(np.int32))
-    return replace(mesh, warnings=tuple(said.warnings))
+    mesh = replace(mesh, warnings=tuple(said.warnings))
+    return mesh if normals is None else with_creases(mesh, normals[mesh.faces])
 
 
 class _LeftOut:
@@ -64,25 +66,34 @@ class _LeftOut:
 
 def _vertices(
     lines: Lines, count: int, kind: bytes, said: _LeftOut
-) -> tuple[Float64Array, Float64Array | None]:
-    """Positions (n, 3), and UVs (n, 2) where the `kind` has them: x y z [normal] [color] [s t]."""
-    rows, uvs = [], []
-    textured, known = kind.startswith(b"ST"), 3 + 3 * (b"N" in kind) + 2 * kind.startswith(b"ST")
+) -> tuple[Float64Array, Float64Array | None, Float64Array | None]:
+    """Positions (n, 3), and normals (n, 3) and UVs (n, 2) where the `kind` has them.
+
+    A line is x y z [normal] [color] [s t].
+    """
+    rows, normals, uvs = [], [], []
+    textured, shaded = kind.startswith(b"ST"), b"N" in kind
+    known = 3 + 3 * shaded + 2 * textured
     for number, line in _take(lines, count, f"{said.name}: expected {count} vertices"):
         words, place = line.split(), f"{said.name}:{number}"
         rows.append(wavefront.numbers(words[:3], 3, place))
+        if shaded:
+            normals.append(_numbers(words[3:6], 3, place))
         if textured:
-            uvs.append(_uv(words[3:], place))
+            uvs.append(_numbers(words[3:][-2:], 2, place))
         said.add("vertex colors", len(words) > known)
-    positions = np.array(rows, dtype=np.float64).reshape(-1, 3)
-    return positions, np.array(uvs, dtype=np.float64).reshape(-1, 2) if textured else None
+    return (
+        np.array(rows, dtype=np.float64).reshape(-1, 3),
+        np.array(normals, dtype=np.float64).reshape(-1, 3) if shaded else None,
+        np.array(uvs, dtype=np.float64).reshape(-1, 2) if textured else None,
+    )
 
 
-def _uv(words: list[bytes], place: str) -> list[float]:
-    """The last two of the numbers after the position; NaN where they are not finite."""
-    if wavefront.not_finite(words[-2:]):
-        return [math.nan, math.nan]
-    return wavefront.numbers(words[-2:], 2, place)
+def _numbers(words: list[bytes], count: int, place: str) -> list[float]:
+    """So many numbers; NaN where one of them is not finite, or missing."""
+    if len(words) < count or wavefront.not_finite(words):
+        return [math.nan] * count
+    return wavefront.numbers(words, count, place)
 
 
 def _head(lines: Lines, name: str) -> tuple[bytes, int, int]:
@@ -118,11 +129,10 @@ def _face(words: list[bytes], vertices: int, place: str) -> tuple[list[int], lis
         size = int(words[0])
         face = [int(word) for word in words[1 : max(size, 0) + 1]]
     except ValueError:
-        size, face = 0, []
-    if size < 1 or len(face) != size or not all(0 <= index < vertices for index in face):
+        size, face = -1, []
+    if size < 0 or len(face) != size or not all(0 <= index < vertices for index in face):
         shown = wavefront.text(b" ".join(words[:8]))
         raise MeshError(
-            f"{place}: expected a count from 1 and as many indices below {vertices}, "
-            f"found {shown!r}"
+            f"{place}: expected a count and as many indices below {vertices}, found {shown!r}"
         )
     return face, words[size + 1 :]

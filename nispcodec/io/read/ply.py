@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 import struct
 from collections.abc import Sequence
@@ -30,7 +31,7 @@ _ORDERS = {"binary_little_endian": "<", "binary_big_endian": ">"}
 _UV_NAMES = (("s", "t"), ("u", "v"), ("texture_u", "texture_v"))
 _XYZ = ("x", "y", "z")
 _NORMAL = ("nx", "ny", "nz")
-_COLORS = {"red", "diffuse_red", "r"}
+_COLORS = {"red", "diffuse_red", "ambient_red", "r"}
 _KEYWORDS = {"ply", "format", "comment", "obj_info", "element", "property"}
 # The line of its own, which a comment may quote.
 _END = re.compile(rb"[\r\n]end_header[ \t]*(?:\r?\n|\r)")
@@ -85,11 +86,12 @@ def read_ply(data: bytes, name: str, folder: Folder) -> TexturedMesh:
     elements = {element.name: element for element in header.elements}
     vertex, face = elements.get("vertex"), elements.get("face")
     warnings = [f"{place}: left out a line of the header" for place in header.unknown]
-    if face is None and "tristrips" in elements:
+    has_strips = "tristrips" in elements and (face is None or not face.count)
+    if has_strips:
         face = _without_strips(elements["tristrips"])
     if vertex is None or face is None:
         raise MeshError(f"{name}: expected elements vertex and face, found {list(elements)}")
-    used = {"vertex", "face" if "face" in elements else "tristrips"}
+    used = {"vertex", "tristrips" if has_strips else "face"}
     others = [each.name for each in header.elements if each.count and each.name not in used]
     warnings.extend(f"{name}: left out element {other!r}" for other in others)
     for element in (vertex, face):
@@ -184,7 +186,15 @@ class _Text:
         self._at += len(codes)
         if len(words) < len(codes):
             raise ValueError("the end of the file")
-        return [float(word) for word in words]
+        try:
+            return [float(word) for word in words]
+        except ValueError:
+            return [_number(word) for word in words]
+
+
+def _number(word: bytes) -> float:
+    """NaN for what any C library writes for no finite number. Raises ValueError for other words."""
+    return math.nan if wavefront.not_finite([word]) else float(word)
 
 
 class _Binary:

@@ -14,6 +14,8 @@ from nispcodec.io.folder import Folder
 from nispcodec.io.read import wavefront
 
 _HEADER, _FACET = 84, 50
+# Counts of those who stream, and do not know it when they write it.
+_UNKNOWN = (0, 2**32 - 1)
 
 
 def read_stl(data: bytes, name: str, folder: Folder) -> TexturedMesh:
@@ -34,9 +36,11 @@ def read_stl(data: bytes, name: str, folder: Folder) -> TexturedMesh:
 
 
 def _is_text(data: bytes) -> bool:
-    """Whether it is text: binary files begin with "solid" too, but their length fits."""
-    if len(data) >= _HEADER and len(data) == _HEADER + _FACET * _stated_count(data):
+    """Whether it is text: binary files begin with "solid" too, but their length or count tells."""
+    if len(data) >= _HEADER and _stated_count(data) in (*_UNKNOWN, (len(data) - _HEADER) / _FACET):
         return False
+    if data.startswith(wavefront.WIDE_MARKS):
+        return True
     text = data.removeprefix(wavefront.BYTE_ORDER_MARK).lstrip()
     return text[:5].lower() == b"solid" and b"\0" not in data[:_HEADER]
 
@@ -47,13 +51,13 @@ def _stated_count(data: bytes) -> int:
 
 
 def _count(data: bytes, name: str, warnings: list[str]) -> int:
-    """How many facets to read: as many as the header says, or, where that is 0, as there are."""
+    """How many facets to read: as many as the header says, or, where it does not, as there are."""
     stated, there = _stated_count(data), (len(data) - _HEADER) // _FACET
+    if stated in _UNKNOWN and there:
+        warnings.append(f"{name}: the header says {stated} facets, {there} are read")
+        stated = there
     if stated > there:
         raise MeshError(f"{name}: expected {stated} facets of {_FACET} bytes, found {there}")
-    if stated == 0 and there:
-        warnings.append(f"{name}: the header says 0 facets, {there} are read")
-        stated = there
     left = len(data) - _HEADER - _FACET * stated
     if left:
         warnings.append(f"{name}: left out {left} bytes after the facets")

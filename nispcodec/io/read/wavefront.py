@@ -32,7 +32,7 @@ SHORTEST_RUN = 16
 LONGEST_RUN = 1 << 16
 # Coordinates beyond this are no finite numbers when they are added.
 _LARGEST = 1e300
-_WIDE_MARKS = (codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)
+WIDE_MARKS = (codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)
 
 
 def logical_lines(data: bytes) -> Iterator[tuple[int, bytes]]:
@@ -103,7 +103,7 @@ def table(lines: Sequence[bytes], keyword: bytes, least: int) -> Float64Array | 
 
 def _normal(data: bytes) -> bytes:
     """The text of a file with line feeds alone, without its mark."""
-    if data.startswith(_WIDE_MARKS):  # as PowerShell writes text
+    if data.startswith(WIDE_MARKS):  # as PowerShell writes text
         data = data.decode("utf-16", errors="replace").encode()
     return data.removeprefix(BYTE_ORDER_MARK).replace(b"\r\n", b"\n").replace(b"\r", b"\n")
 
