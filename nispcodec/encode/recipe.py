@@ -9,8 +9,10 @@ from functools import partial
 from nispcodec.core.asset import TexturedMesh
 from nispcodec.core.document import Document, Field
 from nispcodec.core.errors import TargetSizeError
+from nispcodec.core.memory import freeing
 from nispcodec.core.mesh_part import MeshPart
 from nispcodec.core.progress import Listener, Progress, silent
+from nispcodec.core.sample_set import SampleSet
 from nispcodec.encode.appearance import appearance
 from nispcodec.encode.choice import Choice, Chosen, Loss, Made
 from nispcodec.encode.config import EncodeConfig, Tuning
@@ -58,7 +60,7 @@ def _encoded(
     tuning: Tuning,
     loss: Loss | None = None,
 ) -> NispModel:
-    progress = with_overall(progress, config, tuning.training)
+    progress = freeing(with_overall(progress, config, tuning.training))
     engine = choose_engine(config.engine, config.device, config.preset == "paper", progress)
     materials, textures = appearance(mesh, config, tuning.compact, progress)
     progress(Progress(stage="charts and hidden walls"))
@@ -78,19 +80,28 @@ def _encoded(
         chosen = choice.triangles()
         info = measured(chosen, analysis, config)
         return _finished(chosen, info, form, mesh.name, config, tuning, progress)
-    held = _fitted(field, document, choice)
-    parts: tuple[MeshPart, ...] = ()
-    if choice.split:
-        field = choice.split.field
-        held = field.fit(document)
-        parts = choice.split.parts(document(held))
-    if held:
-        fitted = document(held, parts)
-        chosen = choice.after_fit(fitted, form.errors(fitted))
-    else:
-        chosen = choice.triangles()
-    info = measured(chosen, analysis, config, engine.name, field.sets)
+    # A copy, as `choice` keeps the other, which is not to keep samples.
+    fitted, surface = _networks(replace(field), document, choice)
+    chosen = choice.after_fit(fitted, form.errors(fitted)) if fitted else choice.triangles()
+    info = measured(chosen, analysis, config, engine.name, surface)
     return _finished(chosen, info, form, mesh.name, config, tuning, progress)
+
+
+def _networks(
+    field: FieldForm, document: Made, choice: Choice
+) -> tuple[Document | None, SampleSet]:
+    """A document of networks, or of some bodies as each; None where triangles are to be taken.
+
+    And what charts are judged by. All else that networks learn from, and both halves, are freed.
+    """
+    held = _fitted(field, document, choice)
+    halves, choice.split = choice.split, None
+    parts: tuple[MeshPart, ...] = ()
+    if halves:
+        field = halves.field
+        held = field.fit(lambda found: document(found, ()))
+        parts = halves.parts(document(held, ()))
+    return document(held, parts) if held else None, field.sets.held_out_surface
 
 
 def _fitted(field: FieldForm, document: Made, choice: Choice) -> Field | None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from nispcodec.core.document import Field
-from nispcodec.dataset.recipes import TrainingSets
+from nispcodec.core.sample_set import SampleSet
 from nispcodec.encode.choice import Chosen
 from nispcodec.encode.config import EncodeConfig
 from nispcodec.geometry.analysis import Analysis
@@ -17,13 +17,13 @@ def measured(
     analysis: Analysis,
     config: EncodeConfig,
     engine: str = "",
-    sets: TrainingSets | None = None,
+    surface: SampleSet | None = None,
 ) -> dict[str, str | int | float | bool]:
     """How the file was made; mean distance, chart accuracy, UV errors; shares of area.
 
     Distances are in the normalized frame, UV errors in the asset's UV; both are means, or medians,
     of the larger direction between the original and what decodes. `engine` is what trained
-    networks, and `sets` what their charts are judged by.
+    networks, and `surface` what their charts are judged by.
     """
     solid, errors = analysis.solid, chosen.errors
     found: dict[str, str | int | float | bool] = {"preset": config.preset, "seed": config.seed}
@@ -35,8 +35,8 @@ def measured(
     found["made_up_share"] = _short(errors.made_up.share)
     found["lost_share"] = _short(errors.lost.share)
     field = chosen.document.field
-    if field and field.chart and sets:
-        found["chart_accuracy"] = _short(_chart_accuracy(field, sets))
+    if field and field.chart and surface:
+        found["chart_accuracy"] = _short(_chart_accuracy(field, surface))
     if chosen.document.chart_has_uv.any():
         found["uv_error_median"] = _short(errors.uv_median)
         found["uv_error_mean"] = _short(errors.uv)
@@ -61,9 +61,8 @@ def unmeasured(config: EncodeConfig, field: bool) -> dict[str, str | int | float
     return found | {"engine": "native", "chart_accuracy": 1.23e-5} if field else found
 
 
-def _chart_accuracy(field: Field, sets: TrainingSets) -> float:
+def _chart_accuracy(field: Field, surface: SampleSet) -> float:
     """Share of held-out surface points whose chart the field knows."""
-    surface = sets.held_out_surface
     return float((FieldQueries(field).charts(surface.points) == surface.chart).mean())
 
 

@@ -22,7 +22,7 @@ from nispcodec.core.connectivity import (
     row_ids,
 )
 from nispcodec.geometry.config import SolidConfig
-from nispcodec.geometry.triangles import area, volumes
+from nispcodec.geometry.triangles import apart, area, volumes
 from nispcodec.geometry.winding import Winding
 
 TINY = float(np.finfo(np.float64).tiny)
@@ -235,7 +235,7 @@ def _inside_out(
         return found
     for name in np.flatnonzero(inward):
         of_it = body == name
-        number = Winding(corners[~of_it], config.winding).at(corners[of_it].mean(axis=1))
+        number = Winding(*apart(corners[~of_it]), config.winding).at(corners[of_it].mean(axis=1))
         share = float(np.average(number > 0.5, weights=area(corners[of_it])))
         if config.crossing < share < 1 - config.crossing:
             found |= of_it
@@ -263,7 +263,7 @@ def _has_border(sheet: _Single, wrong: BoolArray, patch: IntArray) -> BoolArray:
 
 def _is_cavity(corners: Float64Array, chosen: BoolArray, config: SolidConfig) -> bool:
     """Whether most of the chosen faces lie inside what the others make."""
-    number = Winding(corners[~chosen], config.winding).at(corners[chosen].mean(axis=1))
+    number = Winding(*apart(corners[~chosen]), config.winding).at(corners[chosen].mean(axis=1))
     return bool(np.average(np.abs(number) > 0.5, weights=area(corners[chosen])) > 0.5)
 
 

@@ -11,7 +11,7 @@ from nispcodec.geometry.bodies import Bodies
 from nispcodec.geometry.config import SolidConfig
 from nispcodec.geometry.nearest import NearestTriangles
 from nispcodec.geometry.rays import leaves, ways_beside
-from nispcodec.geometry.triangles import area, normals
+from nispcodec.geometry.triangles import apart, area, normals
 from nispcodec.geometry.winding import Winding
 
 TINY = np.finfo(np.float64).tiny
@@ -55,14 +55,14 @@ def _exposed(corners: Float64Array, opening: Float64Array, config: SolidConfig) 
     nobody modeled. Openings beside the mesh (flat cards, panels) need no such care.
     """
     center = opening.mean(axis=1)
-    number = Winding(corners, config.winding).at(center)
+    number = Winding(*apart(corners), config.winding).at(center)
     exposed: BoolArray = np.abs(np.abs(number) - 0.5) < config.undecided
     # Where shells are stacked, their neighbors decide the number, and close nothing.
-    apart = _gap(corners, center) > config.plugged_gap
-    asked = np.flatnonzero(~exposed & apart)
+    clear = _gap(corners, center) > config.plugged_gap
+    asked = np.flatnonzero(~exposed & clear)
     share = _escaping(corners, center[asked], -normals(opening[asked]), config)
     exposed[asked] = share > config.escape
-    return exposed & apart
+    return exposed & clear
 
 
 def _with_sheets(
@@ -85,7 +85,7 @@ def _with_sheets(
         sizes, shown = area(corners[faces]), corners[faces]
         in_front = shown.mean(axis=1) + config.probe_offset * normals(shown)
         others = corners[~free[body]]
-        front = Winding(others, config.winding).at(in_front)
+        front = Winding(*apart(others), config.winding).at(in_front)
         total = np.maximum(np.bincount(body[faces], sizes, len(free)), TINY)
         mean = np.bincount(body[faces], front * sizes, len(free)) / total
         loose = np.abs(mean + 0.5) < 0.5 - config.closing

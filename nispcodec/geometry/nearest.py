@@ -10,6 +10,7 @@ import numpy as np
 
 from nispcodec.core.arrays import Float64Array, Int64Array, IntArray
 from nispcodec.core.compiled import KernelError
+from nispcodec.geometry.triangles import apart
 from nispcodec.geometry.z_order import z_order
 from nispcodec.infer.mesh_tree import MeshTree
 from nispcodec.infer.native.mesh_kernel import MeshKernel
@@ -40,7 +41,7 @@ class NearestTriangles:
     """Triangles (m, 3, 3) float64, at least one, to be asked what of them is closest to points."""
 
     def __init__(self, corners: Float64Array) -> None:
-        self._rows, self._corners = triangle_rows(corners), corners
+        self._corners = corners
         self._faces = _faces_by_kernel(corners) or _faces_by_libigl(corners)
 
     def closest(self, points: Float64Array) -> Nearest:
@@ -63,8 +64,9 @@ class NearestTriangles:
         """Fill in what is closest to the chosen (k,) of the points."""
         asked = np.ascontiguousarray(points[chosen], np.float64)
         faces = self._faces(asked)
-        weights = closest_weights(self._rows[:, faces], asked.T).T
-        positions = np.einsum("nk,nkd->nd", weights, self._corners[faces])
+        corners = self._corners[faces]
+        weights = closest_weights(triangle_rows(corners), asked.T).T
+        positions = np.einsum("nk,nkd->nd", weights, corners)
         away = asked - positions
         found.faces[chosen], found.weights[chosen] = faces, weights
         found.positions[chosen] = positions
@@ -86,8 +88,7 @@ def _faces_by_kernel(corners: Float64Array) -> _Faces | None:
 
 
 def _faces_by_libigl(corners: Float64Array) -> _Faces:
-    vertices = np.ascontiguousarray(corners.reshape(-1, 3))
-    faces = np.arange(len(vertices), dtype=np.int64).reshape(-1, 3)
+    vertices, faces = apart(corners)
     tree = igl.AABB()
     tree.init(vertices, faces)
     return lambda points: np.atleast_1d(tree.squared_distance(vertices, faces, points)[1])

@@ -6,6 +6,7 @@ import igl
 import numpy as np
 
 from nispcodec.core.arrays import BoolArray, Float64Array
+from nispcodec.geometry.triangles import apart
 
 TINY = np.finfo(np.float64).tiny
 
@@ -22,8 +23,7 @@ def leaves(corners: Float64Array, points: Float64Array, ways: Float64Array) -> B
     if not len(points):
         return np.zeros(0, dtype=bool)
     tree = igl.AABB()
-    vertices = np.ascontiguousarray(corners.reshape(-1, 3))
-    faces = np.arange(3 * len(corners), dtype=np.int64).reshape(-1, 3)
+    vertices, faces = apart(corners)
     tree.init(vertices, faces)
     hit = tree.intersect_ray_first(vertices, faces, points, ways)[0]
     missed: BoolArray = np.asarray(hit).reshape(-1) < 0

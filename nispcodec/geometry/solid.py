@@ -18,7 +18,7 @@ from nispcodec.geometry.bodies import Bodies, find_bodies, sentences, turn
 from nispcodec.geometry.config import SolidConfig
 from nispcodec.geometry.enclosing import free_faces
 from nispcodec.geometry.reach import reach_of, rim_points, shared_corners
-from nispcodec.geometry.triangles import area, normals
+from nispcodec.geometry.triangles import apart, area, normals
 from nispcodec.geometry.welding import Welding
 from nispcodec.geometry.winding import Winding
 
@@ -67,7 +67,7 @@ def build_solid(
     bodies = find_bodies(corners, welding.positions, config)
     faces = _in_order(corners, bodies, config)
     enclosing = faces.corners[~faces.free & faces.once]
-    winding = Winding(enclosing, config.winding, often=True)
+    winding = Winding(*apart(enclosing), config.winding, often=True)
     shown = np.flatnonzero(~faces.free & ~faces.behind)
     pieces, parents, kind, front, whole = _classify(winding, faces.corners[shown], shown, config)
     seen, sheets = kind != _HIDDEN, faces.corners[faces.free]

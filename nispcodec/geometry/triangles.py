@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from nispcodec.core.arrays import Float64Array
+from nispcodec.core.arrays import Float64Array, Int64Array
 
 
 def area(triangles: Float64Array) -> Float64Array:
@@ -28,6 +28,12 @@ def volumes(triangles: Float64Array) -> Float64Array:
     a, b, c = triangles.transpose(1, 0, 2)
     sixfold: Float64Array = np.einsum("nx,nx->n", a, np.cross(b, c))
     return sixfold / 6
+
+
+def apart(triangles: Float64Array) -> tuple[Float64Array, Int64Array]:
+    """Triangles (n, 3, 3) as vertices (3 n, 3) and faces (n, 3), which share no vertex."""
+    vertices = np.ascontiguousarray(triangles.reshape(-1, 3))
+    return vertices, np.arange(len(vertices), dtype=np.int64).reshape(-1, 3)
 
 
 def _cross(triangles: Float64Array) -> Float64Array:

@@ -7,7 +7,7 @@ from collections.abc import Callable
 import igl
 import numpy as np
 
-from nispcodec.core.arrays import Float64Array
+from nispcodec.core.arrays import Float64Array, IntArray
 from nispcodec.core.compiled import KernelError
 from nispcodec.geometry.config import WindingConfig
 from nispcodec.geometry.z_order import in_space_order
@@ -24,22 +24,28 @@ _Asked = Callable[[Float64Array, float], Float64Array]
 
 
 class Winding:
-    """Generalized winding number of a triangle soup (m, 3, 3), by clusters.
+    """Generalized winding number of vertices (n, 3) and faces (m, 3), by clusters.
 
     By libigl, or, where it is asked for many more points than there are triangles, by the kernel
     that answers for mesh parts: its tree takes longer to build, and a third of the time to ask.
     """
 
-    def __init__(self, bodies: Float64Array, config: WindingConfig, often: bool = False) -> None:
+    def __init__(
+        self,
+        vertices: Float64Array,
+        faces: IntArray,
+        config: WindingConfig,
+        often: bool = False,
+    ) -> None:
         self._margin = config.margin
-        kernel = _by_kernel(bodies) if often and len(bodies) else None
-        self._asked = kernel or _by_libigl(bodies)
+        kernel = _by_kernel(vertices[faces]) if often and len(faces) else None
+        self._asked = kernel or _by_libigl(vertices, faces)
         self._radii, self._rough = (
             (config.radii, config.rough) if kernel else (config.libigl_radii, config.libigl_rough)
         )
 
     def at(self, points: Float64Array) -> Float64Array:
-        """The winding number (n,) at points (n, 3); 0 everywhere for a soup of no triangles."""
+        """The winding number (n,) at points (n, 3); 0 everywhere where there are no faces."""
         return in_space_order(lambda some: self._asked(some, self._radii), points)
 
     def about(self, points: Float64Array) -> Float64Array:
@@ -73,14 +79,13 @@ def _by_kernel(bodies: Float64Array) -> _Asked | None:
     return asked
 
 
-def _by_libigl(bodies: Float64Array) -> _Asked:
+def _by_libigl(vertices: Float64Array, faces: IntArray) -> _Asked:
     tree = igl.FastWindingNumberBVH()
-    if len(bodies):
-        faces = np.arange(3 * len(bodies), dtype=np.int64).reshape(-1, 3)
-        tree.init(np.ascontiguousarray(bodies.reshape(-1, 3)), faces)
+    if len(faces):
+        tree.init(vertices, faces.astype(np.int64))
 
     def asked(points: Float64Array, radii: float) -> Float64Array:
-        if not len(bodies) or not len(points):
+        if not len(faces) or not len(points):
             return np.zeros(len(points))
         numbers: Float64Array = tree.winding_number(points, radii)
         return numbers

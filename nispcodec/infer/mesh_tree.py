@@ -12,6 +12,9 @@ from nispcodec.infer.triangles import ROWS, triangle_rows
 BRANCHES = 8
 """Children of a node and triangles of a leaf: as many as a processor compares at a time."""
 
+BLOCK = 1 << 10
+"""Leaves whose triangles are computed at a time."""
+
 
 @dataclass(frozen=True)
 class MeshTree:
@@ -22,7 +25,7 @@ class MeshTree:
                level, or that leaf. A child with nothing in it has its least at infinity
     triangles  (leaves, ROWS, BRANCHES) float64, see `nispcodec.infer.triangles`
     faces      (leaves, BRANCHES) int32: their numbers. A leaf that is not full has its first
-               triangle again; one with nothing in it has face 0
+               triangle again
     solid      (leaves, BRANCHES) bool: whether the place counts for what is inside
     """
 
@@ -36,11 +39,10 @@ class MeshTree:
         """The tree of triangles (f, 3, 3), at least one; those of sheets (f,) are not solid."""
         order = _leaves(corners)
         there = order >= 0
-        faces = np.maximum(np.where(there, order, order[:, :1]), 0)
-        triangles = triangle_rows(corners[faces.ravel()]).reshape(ROWS, -1, BRANCHES)
+        faces = np.where(there, order, order[:, :1])
         return MeshTree(
-            boxes=_levels(_leaf_boxes(corners[faces], there[:, 0])),
-            triangles=np.ascontiguousarray(triangles.transpose(1, 0, 2)),
+            boxes=_levels(_leaf_boxes(corners[faces])),
+            triangles=_rows(corners, faces),
             faces=faces.astype(np.int32),
             solid=there & ~sheet[faces],
         )
@@ -62,7 +64,8 @@ def _leaves(corners: Float64Array) -> IntArray:
     groups: IntArray = np.arange(len(centers))[None]
     for _ in range(depth):
         groups = _halved(groups, centers)
-    leaves = np.sort(groups, axis=1)
+    # Centers that are none are the last of all.
+    leaves = np.sort(groups, axis=1)[: -(-count // BRANCHES)]
     return np.where(leaves < count, leaves, -1)
 
 
@@ -78,11 +81,19 @@ def _halved(groups: IntArray, centers: Float64Array) -> IntArray:
     return np.take_along_axis(groups, order, axis=1).reshape(-1, half)
 
 
-def _leaf_boxes(corners: Float64Array, there: BoolArray) -> Float64Array:
-    """(leaves, 6): around triangles (leaves, BRANCHES, 3, 3); at infinity where nothing is."""
-    boxes = np.concatenate([corners.min(axis=(1, 2)), corners.max(axis=(1, 2))], axis=1)
-    boxes[~there] = NOTHING
-    return boxes
+def _rows(corners: Float64Array, faces: IntArray) -> Float64Array:
+    """(leaves, ROWS, BRANCHES) of the triangles `faces` (leaves, BRANCHES), some at a time."""
+    rows = np.empty((len(faces), ROWS, BRANCHES))
+    for start in range(0, len(faces), BLOCK):
+        some = faces[start : start + BLOCK]
+        found = triangle_rows(corners[some.ravel()]).reshape(ROWS, -1, BRANCHES)
+        rows[start : start + BLOCK] = found.transpose(1, 0, 2)
+    return rows
+
+
+def _leaf_boxes(corners: Float64Array) -> Float64Array:
+    """(leaves, 6): around triangles (leaves, BRANCHES, 3, 3)."""
+    return np.concatenate([corners.min(axis=(1, 2)), corners.max(axis=(1, 2))], axis=1)
 
 
 def _levels(boxes: Float64Array) -> tuple[Float64Array, ...]:

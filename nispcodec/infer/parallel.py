@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import deque
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager, nullcontext
@@ -22,8 +23,8 @@ _mine = local()
 def parallel_for(run: Callable[[Part], object], parts: Sequence[Part]) -> None:
     """Run on each of the parts, on as many threads as there are cores.
 
-    A part that does the same with parts of its own has one core for them. The first error is
-    raised when all threads have stopped.
+    A part that does the same with parts of its own has one core for them. An error, or Ctrl-C, ends
+    the work: it is raised when all threads are done with the part that they are at.
     """
     workers = min(cores(), len(parts))
     if workers < 2 or getattr(_mine, "busy", False):
@@ -40,8 +41,11 @@ def parallel_for(run: Callable[[Part], object], parts: Sequence[Part]) -> None:
     # One BLAS thread a worker: BLAS's own threads would fight with ours for the same cores. The
     # limit is the whole process's, so that two callers at once would undo it for each other.
     with _ALONE, _blas().limit(limits=1, user_api="blas"), ThreadPoolExecutor(workers) as pool:
-        for done in [pool.submit(work) for _ in range(workers)]:
-            done.result()
+        try:
+            for done in [pool.submit(work) for _ in range(workers)]:
+                done.result()
+        finally:
+            deque(waiting, maxlen=0)
 
 
 @contextmanager

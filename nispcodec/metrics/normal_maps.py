@@ -69,7 +69,7 @@ def _frames(
     surface: Surface, points: SurfacePoints, axes: Float64Array
 ) -> tuple[Float64Array, Float64Array, BoolArray]:
     """Unit directions (n, 3), square to `axes`, in which u and v grow, and where they do."""
-    a, b, c = surface.corners[points.faces].transpose(1, 0, 2)
+    a, b, c = surface.corners_of(points.faces).transpose(1, 0, 2)
     p, q, r = surface.mesh.corner_uvs[points.faces].transpose(1, 0, 2)
     first, second = q - p, r - p
     turn = first[:, 0] * second[:, 1] - first[:, 1] * second[:, 0]

@@ -4,25 +4,26 @@ from __future__ import annotations
 
 import numpy as np
 
-from nispcodec.core.arrays import Float64Array, Int64Array, Uint64Array
+from nispcodec.core.arrays import Float64Array, Int64Array, IntArray, Uint64Array
 
 # Odd, so that multiplying loses no bit.
 FACTORS = np.array([0x9E3779B97F4A7C15, 0xC2B2AE3D27D4EB4F, 0x165667B19E3779F9], np.uint64)
 DOWN = np.uint64(32)
 
 
-def opposite_faces(corners: Float64Array, normals: Float64Array) -> Int64Array:
+def opposite_faces(positions: Float64Array, faces: IntArray, normals: Float64Array) -> Int64Array:
     """(m,) int64: for each face another with the same corners that looks the other way, else -1.
 
-    corners (m, 3, 3) and unit normals (m, 3) of the faces; corners are compared by value.
+    positions (n, 3), the corners (m, 3) and unit normals (m, 3) of faces; positions are compared by
+    value.
     """
-    codes = np.sort(_codes(corners), axis=1)
+    codes = np.sort(_codes(positions)[faces], axis=1)
     order = np.lexsort(codes.T)
     first, second = order[:-1], order[1:]
     same = (codes[first] == codes[second]).all(axis=1)
     first, second = first[same], second[same]
     opposite = (normals[first] * normals[second]).sum(axis=1) < 0
-    found = np.full(len(corners), -1, np.int64)
+    found = np.full(len(faces), -1, np.int64)
     found[first[opposite]], found[second[opposite]] = second[opposite], first[opposite]
     return found
 

@@ -19,7 +19,7 @@ def triangle_distortions(surface: Surface) -> Float64Array:
     no area; triangles without area on the surface are left out.
     """
     chosen = surface.mesh.has_uv & (surface.areas > 0)
-    corners, uvs = surface.corners[chosen], surface.mesh.corner_uvs[chosen]
+    corners, uvs = surface.corners_of(chosen), surface.mesh.corner_uvs[chosen]
     a, b = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
     s, t = uvs[:, 1] - uvs[:, 0], uvs[:, 2] - uvs[:, 0]
     # The triangle in its own plane: a along the first axis, b = (across, height).

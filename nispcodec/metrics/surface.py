@@ -82,6 +82,10 @@ class Surface:
         """(m, 3, 3): the corners of every face, normalized frame."""
         return self.positions[self.mesh.faces]
 
+    def corners_of(self, faces: Int64Array | BoolArray) -> Float64Array:
+        """(n, 3, 3): those of some faces, by number (n,) or mask: less memory than all of them."""
+        return self.positions[self.mesh.faces[faces]]
+
     @cached_property
     def areas(self) -> Float64Array:
         """(m,): the area of every face, normalized frame."""
@@ -96,12 +100,12 @@ class Surface:
     @cached_property
     def opposite_faces(self) -> Int64Array:
         """(m,): the face back to back with each face, -1 where there is none."""
-        return opposite_faces(self.corners, self.normals)
+        return opposite_faces(self.positions, self.mesh.faces, self.normals)
 
     @cached_property
     def diagonal(self) -> float:
         """Length of the bounding box's diagonal, normalized frame."""
-        return float(np.linalg.norm(np.ptp(self.corners.reshape(-1, 3), axis=0)))
+        return float(np.linalg.norm(np.ptp(self.positions[np.unique(self.mesh.faces)], axis=0)))
 
     def sample(self, count: int, rng: np.random.Generator) -> SurfacePoints:
         """`count` points spread uniformly over the area, in the order of the faces."""
@@ -140,7 +144,7 @@ class Surface:
         """(n, 3) barycentric weights of positions (n, 3) on faces (n,)."""
         import igl
 
-        a, b, c = np.moveaxis(self.corners[faces], 1, 0)
+        a, b, c = np.moveaxis(self.corners_of(faces), 1, 0)
         weights: Float64Array = np.clip(igl.barycentric_coordinates(positions, a, b, c), 0, 1)
         return weights / weights.sum(axis=1, keepdims=True)
 
@@ -155,20 +159,21 @@ class Surface:
 
     def interpolate(self, faces: Int64Array, weights: Float64Array) -> Float64Array:
         """(n, 3) positions at barycentric weights (n, 3) of faces (n,)."""
-        positions: Float64Array = np.einsum("nk,nkd->nd", weights, self.corners[faces])
+        positions: Float64Array = np.einsum("nk,nkd->nd", weights, self.corners_of(faces))
         return positions
 
     @cached_property
     def _crosses(self) -> Float64Array:
-        a, b, c = np.moveaxis(self.corners, 1, 0)
+        a, b, c = (self.positions[corner] for corner in self.mesh.faces.T)
         crosses: Float64Array = np.cross(b - a, c - a)
         return crosses
 
     @cached_property
     def _solid(self) -> Int64Array:
         # Faces without area have no normal and no barycentric coordinates.
-        edges = self.corners - np.roll(self.corners, 1, axis=1)
-        longest = np.square(edges).sum(axis=2).max(axis=1)
+        ends = self.mesh.faces.T
+        edges = (self.positions[ends[side]] - self.positions[ends[side - 1]] for side in range(3))
+        longest = np.max([np.square(edge).sum(axis=1) for edge in edges], axis=0)
         solid = np.flatnonzero(2 * self.areas > FLAT * longest)
         if len(solid) == 0:
             raise MeshError(f"{self.mesh.name}: expected a surface, found no face with an area")

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from nispcodec.core.arrays import BoolArray, Float64Array
+from nispcodec.core.arrays import BoolArray
 from nispcodec.core.asset import Material, TexturedMesh
 from nispcodec.core.errors import MeshError
 from nispcodec.core.mesh_part import MeshPart
@@ -127,7 +127,7 @@ class Original:
         points = surface.sample(samples, np.random.default_rng([seed, 0]))
         if counted is not None and counted.held[points.faces].any():
             points = points[counted.held[points.faces]]
-        outer = _outer(surface, points, tree.corners)
+        outer = _outer(surface, points)
         if not outer.any():
             outer[:] = True
         seen = outer if counted is None else outer | counted.inner[points.faces]
@@ -143,7 +143,7 @@ class Original:
             points = other.sample(len(self.points), np.random.default_rng([self.seed, 1]))
         except MeshError:
             return Errors(np.inf, np.inf, np.inf, np.inf)
-        outer = _outer(other, points, other.positions[decoded.faces])
+        outer = _outer(other, points)
         points = points[outer] if outer.any() else points
         there = self.matches(other)
         directions = [there[self.outer], Matches(self._closest(points), points)]
@@ -191,9 +191,11 @@ class Original:
         return SurfacePoints(faces, weights, hits.positions)
 
 
-def _outer(surface: Surface, points: SurfacePoints, corners: Float64Array) -> BoolArray:
-    """(n,): the points that are not hidden by triangles (m, 3, 3)."""
-    winding = Winding(corners, WindingConfig(), often=2 * len(points) > len(corners))
+def _outer(surface: Surface, points: SurfacePoints) -> BoolArray:
+    """(n,): the points of a surface that it does not hide."""
+    faces = surface.mesh.faces
+    often = 2 * len(points) > len(faces)
+    winding = Winding(surface.positions, faces, WindingConfig(), often)
     return sides_of(surface, points, winding.about).outer
 
 

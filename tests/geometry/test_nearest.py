@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import tracemalloc
+
 import numpy as np
 import pytest
 
@@ -9,8 +11,9 @@ from nispcodec.core.arrays import Float64Array
 from nispcodec.core.compiled import CompiledKernel, KernelError
 from nispcodec.geometry.config import WindingConfig
 from nispcodec.geometry.nearest import NearestTriangles
+from nispcodec.geometry.triangles import apart
 from nispcodec.geometry.winding import Winding
-from nispcodec.infer.triangles import squared_distances, triangle_rows
+from nispcodec.infer.triangles import ROWS, squared_distances, triangle_rows
 from tests.geometry.shapes import cube, hemisphere
 
 
@@ -49,6 +52,16 @@ def test_answers_keep_the_order_of_many_points() -> None:
 @pytest.mark.usefixtures("engine")
 def test_winding_numbers_of_either_kind_are_alike() -> None:
     corners, asked = np.concatenate([cube((-0.5,) * 3, 0.6), hemisphere()]), points(20_000)
-    often, seldom = (Winding(corners, WindingConfig(), often=each) for each in (True, False))
+    soup, none = apart(corners), apart(corners[:0])
+    often, seldom = (Winding(*soup, WindingConfig(), often=each) for each in (True, False))
     assert np.abs(often.at(asked) - seldom.at(asked)).max() < 0.06
-    assert Winding(corners[:0], WindingConfig(), often=True).at(asked[:2]).tolist() == [0, 0]
+    assert Winding(*none, WindingConfig(), often=True).at(asked[:2]).tolist() == [0, 0]
+
+
+def test_a_tree_takes_little_more_memory_than_what_it_holds() -> None:
+    corners = np.random.default_rng(0).random((87_000, 3, 3))
+    tracemalloc.start()
+    NearestTriangles(corners)
+    most = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    assert most < 2 * ROWS * corners.itemsize * len(corners)
