@@ -4,13 +4,14 @@
 # Versions:   Pillow 13.0.0, numpy 2.4.6
 # Behavior:  BC2 has four bits of alpha for each pixel. The encoder shifts the whole eight bits into place and ors them: a pixel
 #             gets the low half of its own alpha or the high half of the one on its left in the block. Only 0 and 255, each in areas
-#             of its own, come out right. BC3 (DXT5) is right, and so is Pillow's decoder: the bytes in the file are wrong.
+#             of its own, come out right. BC3 (DXT5) comes close on the same images, and Pillow's decoder is right: the bytes
+#             in the file are wrong.
 # Output seen: alpha 128 everywhere: 0 in every fourth column, 136 elsewhere; 240: 0 and 255; 100: 68 and 102; a mask
 #             0 255 0 0 in each row: 0 255 255 0; a ramp 0..252: rms error 107 of 255 where four bits allow 5; BC3: 1.9
 # One would guess: the simple format with stored alpha is the safe one; 4 bits are off by 8 at most.
 # Who is hurt: foliage, decals, glass in DDS: cut-outs grow to the right by a pixel, panes get a stripe of holes every 4 pixels.
 #             Tests with opaque images, or with a square of alpha 0 aligned to blocks, pass.
-# Instead:    pixel_format="DXT5" or "BC3", or another encoder; look at files written as BC2 or DXT3 since Pillow could.
+# Instead:    another encoder, or "DXT5" with the flaws that pillow-dds-reddens.sh shows; look at files written as BC2 or DXT3 since Pillow could.
 set -euo pipefail
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
