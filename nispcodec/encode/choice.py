@@ -83,6 +83,8 @@ class Choice:
         few = (forms.surely_smaller_fine if fine else forms.surely_smaller) * size
         self._estimate = self._form.estimate(distance, few, forms.surely_larger * size)
         self.split = self._better_split(size, distance)
+        if self.split:
+            self._form.forget()
         return self.split is None and self._estimate > few
 
     @property

@@ -48,7 +48,14 @@ class FieldForm:
         self.progress(Progress(stage="samples"))
         preset = self.config.preset
         sampler = Sampler(self.analysis, self.config.seed, self.tuning.sampling_of(preset))
-        return (paper_training_sets if preset == "paper" else training_sets)(sampler)
+        found = (paper_training_sets if preset == "paper" else training_sets)(sampler)
+        self.analysis.field.forget()
+        return found
+
+    def forget(self) -> None:
+        """Free the samples and what was made of them."""
+        for name in ("sets", "_problem", "_context"):
+            vars(self).pop(name, None)
 
     @property
     def foreseen(self) -> tuple[float, float]:

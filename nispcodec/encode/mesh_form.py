@@ -9,6 +9,7 @@ from functools import cached_property, partial
 
 from nispcodec.core.asset import TexturedMesh
 from nispcodec.core.document import Document, Field
+from nispcodec.core.memory import give_back
 from nispcodec.core.mesh_part import MAX_GRID_BITS, MeshPart
 from nispcodec.core.progress import Listener, Progress
 from nispcodec.encode.bodies import Sorted, sort_bodies
@@ -107,10 +108,17 @@ class MeshForm:
         self._told = replace(self._told, step=self._told.step + 1)
         self._progress(self._told)
 
+    def forget(self) -> None:
+        """Free trees of the asset, which grow again for the next question."""
+        self.simplifier.source.tree.forget()
+        self.simplifier.original.tree.forget()
+
     def errors(self, document: Document) -> Errors:
         """How far the surface that a document decodes to is off."""
         self._progress(Progress(stage="surface", step=0, steps=2))
-        found = self.simplifier.original.errors(self._decoded(document))
+        decoded = self._decoded(document)
+        give_back()
+        found = self.simplifier.original.errors(decoded)
         self._progress(Progress(stage="surface", step=1, steps=2))
         return found
 

@@ -80,8 +80,7 @@ def _encoded(
         chosen = choice.triangles()
         info = measured(chosen, analysis, config)
         return _finished(chosen, info, form, mesh.name, config, tuning, progress)
-    # A copy, as `choice` keeps the other, which is not to keep samples.
-    fitted, surface = _networks(replace(field), document, choice)
+    fitted, surface = _networks(field, document, choice)
     chosen = choice.after_fit(fitted, form.errors(fitted)) if fitted else choice.triangles()
     info = measured(chosen, analysis, config, engine.name, surface)
     return _finished(chosen, info, form, mesh.name, config, tuning, progress)
@@ -96,12 +95,14 @@ def _networks(
     """
     held = _fitted(field, document, choice)
     halves, choice.split = choice.split, None
-    parts: tuple[MeshPart, ...] = ()
     if halves:
+        field.forget()
         field = halves.field
         held = field.fit(lambda found: document(found, ()))
-        parts = halves.parts(document(held, ()))
-    return document(held, parts) if held else None, field.sets.held_out_surface
+    surface = field.sets.held_out_surface
+    field.forget()
+    parts = halves.parts(document(held, ())) if halves else ()
+    return document(held, parts) if held else None, surface
 
 
 def _fitted(field: FieldForm, document: Made, choice: Choice) -> Field | None:

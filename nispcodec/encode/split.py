@@ -48,6 +48,7 @@ def split(whole: FieldForm, found: Sorted) -> Split | None:
         return None
     # Charts are merged for networks alone.
     others = analyze(mesh.only(found.other), seed, replace(geometry, merging=None), frame)
+    others.field.forget()
     return Split(
         field=replace(whole, analysis=dense),
         dense=MeshForm(dense, seed, config, whole.progress),

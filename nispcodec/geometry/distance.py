@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -43,10 +44,22 @@ class DistanceField:
     """
 
     def __init__(self, solid: Solid, config: SolidConfig = SolidConfig()) -> None:
-        self.solid, self._facing = solid, config.facing
-        self._walls = _Tree(solid.pieces, solid.wall)
-        lifted = solid.pieces + config.sheet_lift * solid.normals[:, None]
-        self._sheets = _Tree(lifted, solid.open_surface)
+        self.solid, self._config = solid, config
+
+    @cached_property
+    def _walls(self) -> _Tree:
+        return _Tree(self.solid.pieces, self.solid.wall)
+
+    @cached_property
+    def _sheets(self) -> _Tree:
+        lifted = self.solid.pieces + self._config.sheet_lift * self.solid.normals[:, None]
+        return _Tree(lifted, self.solid.open_surface)
+
+    def forget(self) -> None:
+        """Free the trees, which grow again for the next question."""
+        self.solid.winding.forget()
+        for name in ("_walls", "_sheets"):
+            vars(self).pop(name, None)
 
     def closest(self, points: Float64Array, signed: bool = True) -> Closest:
         """Signed distance (negative inside) and closest surface point of (n, 3) points.
@@ -112,7 +125,7 @@ class DistanceField:
         """As `inside`, by the closest walls where they tell: these are unsigned, as yet."""
         solid, away = self.solid, points - walls.point
         along = np.einsum("nx,nx->n", away, solid.normals[walls.piece])
-        told = np.abs(along) > self._facing * walls.sdf
+        told = np.abs(along) > self._config.facing * walls.sdf
         # Next to a wall the way to it is lost in rounding.
         told &= (walls.sdf < solid.reach[walls.piece]) & (walls.sdf > NEAREST)
         found = (along > 0) == solid.inside_front[walls.piece]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import cached_property
 
 import igl
 import numpy as np
@@ -37,25 +38,37 @@ class Winding:
         config: WindingConfig,
         often: bool = False,
     ) -> None:
-        self._margin = config.margin
-        kernel = _by_kernel(vertices[faces]) if often and len(faces) else None
-        self._asked = kernel or _by_libigl(vertices, faces)
-        self._radii, self._rough = (
-            (config.radii, config.rough) if kernel else (config.libigl_radii, config.libigl_rough)
-        )
+        self._vertices, self._faces = vertices, faces
+        self._config, self._often = config, often
+
+    @cached_property
+    def _tree(self) -> tuple[_Asked, float, float]:
+        """What answers, from how many radii away clusters are one, and that for rough answers."""
+        config, often = self._config, self._often and len(self._faces)
+        kernel = _by_kernel(self._vertices[self._faces]) if often else None
+        if kernel:
+            return kernel, config.radii, config.rough
+        asked = _by_libigl(self._vertices, self._faces)
+        return asked, config.libigl_radii, config.libigl_rough
+
+    def forget(self) -> None:
+        """Free the tree, which grows again for the next question."""
+        vars(self).pop("_tree", None)
 
     def at(self, points: Float64Array) -> Float64Array:
         """The winding number (n,) at points (n, 3); 0 everywhere where there are no faces."""
-        return in_space_order(lambda some: self._asked(some, self._radii), points)
+        asked, radii, _ = self._tree
+        return in_space_order(lambda some: asked(some, radii), points)
 
     def about(self, points: Float64Array) -> Float64Array:
         """The same, only roughly except near a half, one and a half and so on: which side it is."""
         return in_space_order(self._about, points)
 
     def _about(self, points: Float64Array) -> Float64Array:
-        number = self._asked(points, self._rough)
-        unclear = np.flatnonzero(np.abs(number - np.floor(number) - 0.5) < self._margin)
-        number[unclear] = self._asked(points[unclear], self._radii)
+        asked, radii, rough = self._tree
+        number = asked(points, rough)
+        unclear = np.flatnonzero(np.abs(number - np.floor(number) - 0.5) < self._config.margin)
+        number[unclear] = asked(points[unclear], radii)
         return number
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -15,6 +16,9 @@ from nispcodec.metrics.opposite_faces import opposite_faces
 
 FLAT = 1e-7
 """A face whose height is less than this part of its longest edge is a line, to double precision."""
+
+BLOCK = 1 << 14
+"""Faces that are measured at a time."""
 
 BEFORE = 2e-3
 """How far in front of one of two faces back to back one looks from (normalized frame)."""
@@ -82,20 +86,19 @@ class Surface:
         """(m, 3, 3): the corners of every face, normalized frame."""
         return self.positions[self.mesh.faces]
 
-    def corners_of(self, faces: Int64Array | BoolArray) -> Float64Array:
-        """(n, 3, 3): those of some faces, by number (n,) or mask: less memory than all of them."""
+    def corners_of(self, faces: Int64Array | BoolArray | slice) -> Float64Array:
+        """(n, 3, 3): those of some faces, which take less memory than all of them."""
         return self.positions[self.mesh.faces[faces]]
 
     @cached_property
     def areas(self) -> Float64Array:
         """(m,): the area of every face, normalized frame."""
-        lengths: Float64Array = np.linalg.norm(self._crosses, axis=1)
-        return lengths / 2
+        return self._in_blocks(lambda corners: _lengths(_crosses(corners)) / 2)
 
     @cached_property
     def normals(self) -> Float64Array:
         """(m, 3): the unit normal of every face, 0 for a face without area."""
-        return self._crosses / np.maximum(2 * self.areas, np.finfo(np.float64).tiny)[:, None]
+        return self._in_blocks(_normals)
 
     @cached_property
     def opposite_faces(self) -> Int64Array:
@@ -162,19 +165,37 @@ class Surface:
         positions: Float64Array = np.einsum("nk,nkd->nd", weights, self.corners_of(faces))
         return positions
 
-    @cached_property
-    def _crosses(self) -> Float64Array:
-        a, b, c = (self.positions[corner] for corner in self.mesh.faces.T)
-        crosses: Float64Array = np.cross(b - a, c - a)
-        return crosses
+    def _in_blocks(self, measure: Callable[[Float64Array], Float64Array]) -> Float64Array:
+        """(m, ...) of corners (k, 3, 3), some faces at a time: all of them take much memory."""
+        starts = range(0, max(len(self.mesh.faces), 1), BLOCK)
+        return np.concatenate([measure(self.corners_of(slice(at, at + BLOCK))) for at in starts])
 
     @cached_property
     def _solid(self) -> Int64Array:
         # Faces without area have no normal and no barycentric coordinates.
-        ends = self.mesh.faces.T
-        edges = (self.positions[ends[side]] - self.positions[ends[side - 1]] for side in range(3))
-        longest = np.max([np.square(edge).sum(axis=1) for edge in edges], axis=0)
-        solid = np.flatnonzero(2 * self.areas > FLAT * longest)
+        solid = np.flatnonzero(2 * self.areas > FLAT * self._in_blocks(_longest))
         if len(solid) == 0:
             raise MeshError(f"{self.mesh.name}: expected a surface, found no face with an area")
         return solid
+
+
+def _crosses(corners: Float64Array) -> Float64Array:
+    a, b, c = np.moveaxis(corners, 1, 0)
+    crosses: Float64Array = np.cross(b - a, c - a)
+    return crosses
+
+
+def _lengths(vectors: Float64Array) -> Float64Array:
+    lengths: Float64Array = np.linalg.norm(vectors, axis=1)
+    return lengths
+
+
+def _normals(corners: Float64Array) -> Float64Array:
+    crosses = _crosses(corners)
+    return crosses / np.maximum(_lengths(crosses), np.finfo(np.float64).tiny)[:, None]
+
+
+def _longest(corners: Float64Array) -> Float64Array:
+    """(n,): the squares of the longest edges."""
+    longest: Float64Array = np.square(corners - np.roll(corners, 1, axis=1)).sum(axis=2).max(axis=1)
+    return longest

@@ -37,6 +37,10 @@ class Tree:
         found = triangles.closest(points)
         return Hits(which[found.faces], found.weights, found.positions)
 
+    def forget(self) -> None:
+        """Free the tree itself, which grows again for the next question."""
+        vars(self).pop("_solid", None)
+
     @property
     def is_flat(self) -> bool:
         """Whether no triangle has an area: then there is no closest point."""

@@ -89,3 +89,13 @@ def test_gaps_are_where_hidden_pieces_meet_others_and_rims_are_followed() -> Non
     assert along[0] == 0
     assert np.diff(along).max() <= 0.25
     assert 0.7 < along.max() <= 1
+
+
+def test_what_was_forgotten_is_answered_as_before() -> None:
+    field = field_of(BODIES["cube and card"])
+    points = points_beside(field, 1000, 0.05)
+    before = field.closest(points)
+    field.forget()
+    assert "_walls" not in vars(field)
+    again = field.closest(points)
+    assert all(np.array_equal(getattr(again, name), held) for name, held in vars(before).items())

@@ -1,5 +1,7 @@
 from __future__ import annotations
 
+import tracemalloc
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -88,3 +90,12 @@ def test_normals_at_an_angle_agree_by_its_cosine() -> None:
     turn = np.array([[1, 0, 0], [0, np.cos(tilt), np.sin(tilt)], [0, -np.sin(tilt), np.cos(tilt)]])
     tilted = Surface(plane(), flat().positions @ turn)
     assert normal_consistency(flat(), tilted, shifted(0, 0, 0)) == pytest.approx(0.5)
+
+
+def test_points_on_a_fine_surface_take_less_memory_than_its_corners() -> None:
+    surface = Surface.of(plane(cells=400), UNIT)
+    tracemalloc.start()
+    surface.sample(10, np.random.default_rng(0))
+    most = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    assert most < surface.corners.nbytes
