@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
-# gltf-transform prune and optimize: materials that share a one-colour texture multiply into each other, down to black
+# gltf-transform prune and optimize: materials that share a one-color texture multiply into each other, down to black
 #
 # Versions:   npm @gltf-transform/cli, core 4.5.1
-# Behavior:  prune turns a texture of one colour into material factors (on by default, in optimize too). For base colour the
-#             product is written back into the texture's own colour, so the next material that uses the same texture is
+# Behavior:  prune turns a texture of one color into material factors (on by default, in optimize too). For base color the
+#             product is written back into the texture's own color, so the next material that uses the same texture is
 #             multiplied by the factors of all before it. The log says `Removed types... Texture (1)`, no more.
 # Output seen: one white 4 x 4 texture, factors red [1, .1, .1], green [.1, 1, .1], blue [.1, .1, 1], grey [.5, .5, .5], each
 #             with alpha .5: after prune or optimize red stays, green is [.1, .1, .01, .25], blue [.01, .01, .01, .125],
@@ -38,7 +38,7 @@ document.createScene().addChild(document.createNode().setMesh(mesh));
 const io = new NodeIO();
 await io.write('source.glb', document);
 
-/** By material, the base colour that a command leaves; the texture is white or gone. */
+/** By material, the base color that a command leaves; the texture is white or gone. */
 async function run(...args) {
   execFileSync('node_modules/.bin/gltf-transform', [args[0], 'source.glb', 'out.glb', ...args.slice(1)], { stdio: 'ignore' });
   const found = {};
@@ -55,8 +55,8 @@ assert.deepEqual(await run('optimize', '--prune-solid-textures', 'false', ...pla
 for (const args of [['prune'], ['optimize', ...plain]]) {
   const found = await run(...args);
   assert.deepEqual(found.red, factors.red);
-  assert.deepEqual(found.green, [0.1, 0.1, 0.01, 0.25], 'the texture keeps its colour now');
-  assert.deepEqual(found.grey, [0.005, 0.005, 0.005, 0.0625], 'the texture keeps its colour now');
+  assert.deepEqual(found.green, [0.1, 0.1, 0.01, 0.25], 'the texture keeps its color now');
+  assert.deepEqual(found.grey, [0.005, 0.005, 0.005, 0.0625], 'the texture keeps its color now');
 }
 console.log('as described');
 EOF

@@ -11,7 +11,8 @@
 # One would guess: the simple format with stored alpha is the safe one; 4 bits are off by 8 at most.
 # Who is hurt: foliage, decals, glass in DDS: cut-outs grow to the right by a pixel, panes get a stripe of holes every 4 pixels.
 #             Tests with opaque images, or with a square of alpha 0 aligned to blocks, pass.
-# Instead:    another encoder, or "DXT5" with the flaws that pillow-dds-reddens.sh shows; look at files written as BC2 or DXT3 since Pillow could.
+# Instead:    another encoder, or "DXT5" with the flaws that pillow-dds-reddens.sh shows; write files again that Pillow saved as
+#             BC2 or DXT3.
 set -euo pipefail
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
