@@ -62,6 +62,7 @@ def find_bodies(
     """
     sheet = _single(positions)
     places, welded = _seams_welded(corners, positions, sheet, config)
+    places = _unrounded(corners, positions, places, config)
     if places is not positions:
         sheet = _single(places)
     flipped, unclear = _flipped(corners[sheet.faces], sheet, config)
@@ -156,6 +157,24 @@ def _single(places: Int64Array) -> _Single:
     return _Single(kept, places[kept], group, forward, flat, surplus, size, edge, along)
 
 
+def _unrounded(
+    corners: Float64Array, positions: Int64Array, places: Int64Array, config: SolidConfig
+) -> Int64Array:
+    """The places, those joined whose positions rounding alone holds apart: copies have such."""
+    at = np.unique(positions, return_index=True)[1]
+    pairs = cKDTree(corners.reshape(-1, 3)[at]).query_pairs(config.gap, output_type="ndarray")
+    return _joined(places, places.reshape(-1)[at][pairs])
+
+
+def _joined(positions: Int64Array, pairs: Int64Array) -> Int64Array:
+    """The positions, those joined whose numbers are pairs (k, 2)."""
+    if not len(pairs):
+        return positions
+    count = int(positions.max()) + 1
+    numbers = connected_components(pairs[:, 0], pairs[:, 1], count)[1]
+    return numbers.astype(np.int64)[positions]
+
+
 def _seams_welded(
     corners: Float64Array, positions: Int64Array, sheet: _Single, config: SolidConfig
 ) -> tuple[Int64Array, int]:
@@ -171,10 +190,7 @@ def _seams_welded(
     if not len(pairs):
         return positions, 0
     gaps = np.linalg.norm(spots[pairs[:, 0]] - spots[pairs[:, 1]], axis=1)
-    open_ends = len(np.unique(pairs[gaps > config.gap]))
-    size = int(positions.max()) + 1
-    joined = connected_components(name[pairs[:, 0]], name[pairs[:, 1]], size)[1]
-    return joined.astype(np.int64)[positions], open_ends
+    return _joined(positions, name[pairs]), len(np.unique(pairs[gaps > config.gap]))
 
 
 def _neighbors(edge: Int64Array) -> tuple[Int64Array, Int64Array]:

@@ -54,6 +54,11 @@ def mixed(corners: Float64Array) -> Float64Array:
     return doubled[np.random.default_rng(0).permutation(len(doubled))]
 
 
+def rounded_both_ways(corners: Float64Array) -> Float64Array:
+    """Every face both ways round, one copy as single precision rounds it."""
+    return np.concatenate([corners, corners[:, ::-1].astype(np.float32)])
+
+
 def partly_twice(corners: Float64Array) -> Float64Array:
     return np.concatenate([corners, corners[: len(corners) // 3]])
 
@@ -79,6 +84,8 @@ BROKEN: dict[str, tuple[Float64Array, Callable[[Float64Array], Float64Array], Fl
     "most reversed": (BALL, lambda c: some(c, 0.8), NOTHING),
     "both ways": (BALL, both_ways, NOTHING),
     "both ways in any order": (BALL, mixed, NOTHING),
+    "both ways, one rounded": (BALL, rounded_both_ways, NOTHING),
+    "both ways, one rounded, over ground": (BALL, rounded_both_ways, GROUND),
     "partly both ways": (BALL, partly_both_ways, NOTHING),
     "partly twice": (BALL, partly_twice, NOTHING),
     "twice": (BALL, lambda c: np.concatenate([c, c]), NOTHING),
