@@ -588,7 +588,7 @@ def broken(change: str) -> bytes:
         ("width", "expected type VEC3, found 'VEC2'"),
         ("float indices", "accessors[0]: expected"),
         ("index", "primitives[0]: expected vertex indices below 3, found 3"),
-        ("two indices", "expected a multiple of 3 indices, found 2"),
+        ("two indices", "left out 2 corner(s)"),
         ("nan", "accessors[3]: expected finite numbers in element 2"),
         ("cycle", "nodes[0]: expected a node with one parent"),
         ("children", "expected node indices in children"),
@@ -698,6 +698,35 @@ def test_a_wrong_length_in_the_header_is_said(more: int) -> None:
     mesh = read_gltf(data, "a.glb", NOWHERE)
     assert len(mesh.faces) == 1
     assert "bytes as in the header" in mesh.warnings[0]
+
+
+def test_json_may_be_padded_with_nul() -> None:
+    data = one_triangle().glb()
+    (length,) = struct.unpack_from("<I", data, 12)
+    longer = struct.pack("<I", length + 4), struct.pack("<I", len(data) + 4)
+    data = (
+        data[:8] + longer[1] + longer[0] + data[16 : 20 + length] + bytes(4) + data[20 + length :]
+    )
+    mesh = read_gltf(data, "a.glb", NOWHERE)
+    assert len(mesh.faces) == 1
+    assert mesh.warnings == ()
+
+
+@pytest.mark.parametrize("indexed", [False, True])
+def test_corners_that_make_no_triangle_are_left_out(tmp_path: Path, indexed: bool) -> None:
+    gltf = one_triangle()
+    primitive = gltf.json["meshes"][0]["primitives"][0]
+    primitive["attributes"] = {"POSITION": gltf.accessor([[0, 0, 0], [1, 0, 0], [0, 1, 0]] * 2)}
+    if indexed:
+        primitive["indices"] = gltf.accessor([0, 1, 2, 5], "<u2")
+    else:
+        primitive.pop("indices", None)
+        primitive["attributes"] = {
+            "POSITION": gltf.accessor([[0, 0, 0], [1, 0, 0], [0, 1, 0], [9] * 3])
+        }
+    mesh = gltf.load(tmp_path)
+    assert len(mesh.faces) == 1
+    assert mesh.warnings[0].endswith("left out 1 corner(s) after the last triangle")
 
 
 def test_a_streamed_binary_chunk_reaches_to_the_end() -> None:

@@ -152,7 +152,7 @@ def broken(kind: str) -> Gltf:
     elif kind == "width":
         extension["attributes"]["POSITION"] = IDS["TEXCOORD_0"]
     elif kind == "type":
-        gltf.json["accessors"][1]["componentType"] = 5121
+        gltf.json["accessors"][0]["componentType"] = 5121
         gltf.data = square(stream(POSITIONS * np.float32(0.5))).data
     elif kind == "points":
         gltf.data = DracoPy.encode(POSITIONS).ljust(len(gltf.data), b"\0")
@@ -170,7 +170,7 @@ def broken(kind: str) -> Gltf:
         ("id", "expected an attribute of the unique id 4 for POSITION, found [5, 7, 8, 9]"),
         ("view", "bufferViews: expected an index below 1, found 3"),
         ("width", "accessors[0]: expected 3 numbers in each element, found (2,)"),
-        ("type", "accessors[1]: expected numbers that fit uint8, found 'float32'"),
+        ("type", "accessors[0]: expected numbers that fit uint8, found 'float32'"),
         ("points", "expected data of Draco, found 'a point cloud'"),
         ("shared", "accessors[0]: expected the same values by all that use it"),
     ],

@@ -132,7 +132,7 @@ class _Scene:
         first, count = self._place_positions(primitive, shown, number)
         if unpacked is not None:
             mode = _TRIANGLES  # whatever they were before
-        once = _triangles(self._corner_indices(primitive, unpacked, count), mode, primitive)
+        once = _triangles(self._corner_indices(primitive, unpacked, count, mode), mode)
         self._expect_moderate(primitive, len(shown.matrices) * len(once))
         faces = np.concatenate([np.zeros((0, 3), np.int64), *_turned(once, shown)])
         starts = first + count * np.arange(len(shown.matrices))
@@ -273,18 +273,21 @@ class _Scene:
         return replace(source, texcoord=0)
 
     def _corner_indices(
-        self, primitive: Element, unpacked: Int64Array | None, count: int
+        self, primitive: Element, unpacked: Int64Array | None, count: int, mode: int
     ) -> Int64Array:
         accessor = primitive.optional("indices")
         if unpacked is not None:
             indices = unpacked
         elif accessor is None:
-            return np.arange(count)
+            indices = np.arange(count)
         else:
             indices = self._buffers.indices(accessor)
         if indices.size and indices.max() >= count:
             primitive.fail(f"vertex indices below {count}", int(indices.max()))
-        return indices
+        left = len(indices) % 3 if mode == _TRIANGLES else 0
+        if left:
+            self._warn(f"{primitive.place}: left out {left} corner(s) after the last triangle")
+        return indices[: len(indices) - left]
 
     def _expect_moderate(self, primitive: Element, more: int) -> None:
         largest = max(self._count, self._positions.count, self._uvs.count) + more
@@ -335,11 +338,9 @@ def _turned(faces: Int64Array, shown: Shown) -> Iterator[Int64Array]:
         yield faces[:, [0, 2, 1]] if each else faces
 
 
-def _triangles(indices: Int64Array, mode: int, primitive: Element) -> Int64Array:
+def _triangles(indices: Int64Array, mode: int) -> Int64Array:
     """(n,) corner indices -> (m, 3) faces; glTF 2.0, section 3.7.2.1."""
     if mode == _TRIANGLES:
-        if len(indices) % 3:
-            primitive.fail("a multiple of 3 indices", len(indices))
         return indices.reshape(-1, 3)
     first = np.arange(max(len(indices) - 2, 0))
     if mode == _FAN:

@@ -53,7 +53,7 @@ def split_glb(data: bytes, name: str, warnings: list[str]) -> tuple[bytes, bytes
         found = f"chunk type {chunks[0][0]:#x}" if chunks else "no chunk"
         raise MeshError(f"{name}: expected a JSON chunk first, found {found}")
     binary = next((chunk for kind, chunk in chunks if kind == _BINARY_CHUNK), None)
-    return chunks[0][1], binary
+    return chunks[0][1].rstrip(b"\0"), binary  # with which some pad it, in place of spaces
 
 
 def _chunks(data: bytes, name: str) -> tuple[list[tuple[int, bytes]], int]:
