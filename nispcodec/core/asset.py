@@ -155,8 +155,12 @@ class TexturedMesh:
     @property
     def corner_uvs(self) -> Float64Array:
         """(m, 3, 2) float64: the UVs of every face's corners; zeros where a face has none."""
+        return self.uvs_at(slice(None))
+
+    def uvs_at(self, faces: IntArray | slice) -> Float64Array:
+        """(n, 3, 2) float64: the same of some faces."""
         padded = np.vstack([self.uvs, np.zeros((1, 2))])
-        return padded[self.uv_faces]
+        return padded[self.uv_faces[faces]]
 
     @property
     def has_uv(self) -> BoolArray:

@@ -117,6 +117,7 @@ class MeshForm:
         """How far the surface that a document decodes to is off."""
         self._progress(Progress(stage="surface", step=0, steps=2))
         decoded = self._decoded(document)
+        self.forget()
         give_back()
         found = self.simplifier.original.errors(decoded)
         self._progress(Progress(stage="surface", step=1, steps=2))

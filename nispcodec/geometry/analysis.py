@@ -72,15 +72,15 @@ def analyze(
     """
     random = np.random.default_rng([seed, 0])
     frame = frame or normalizing_frame(mesh)
-    corners = frame.to_normalized(mesh.corners)
+    normalized = replace(mesh, positions=frame.to_normalized(mesh.positions))
     welding = welded(mesh)
-    solid = build_solid(corners, welding, config.solid)
+    solid = build_solid(normalized.corners, welding, config.solid)
     field = DistanceField(solid, config.solid)
     patches = split_charts(mesh, welding)
     if config.merging:
         patches = split_self_seams(mesh.corners, welding, patches)
     table = chart_table(mesh, patches, config.filled_atlas)
-    label = Labeling(field, corners, mesh.corner_uvs, patches, table)
+    label = Labeling(field, normalized, patches, table)
     symmetry = find_symmetry(label, config.symmetry)
     closing = np.zeros((0, 3))
     if config.merging:

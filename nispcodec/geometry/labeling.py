@@ -19,16 +19,14 @@ from nispcodec.geometry.surface_points import barycentric
 class Labeling:
     """Labels points by the faces of one mesh, its charts and its chart table.
 
-    field    the signed distance
-    corners  (m, 3, 3) every face's corners, normalized frame
-    uvs      (m, 3, 2) their UVs, as in the asset
-    charts   the chart of each face
-    table    the charts as the file has them, and the map of the UVs
+    field   the signed distance
+    mesh    the asset, positions in the normalized frame
+    charts  the chart of each face
+    table   the charts as the file has them, and the map of the UVs
     """
 
     field: DistanceField
-    corners: Float64Array
-    uvs: Float64Array
+    mesh: TexturedMesh
     charts: Charts
     table: ChartTable
 
@@ -50,8 +48,8 @@ class Labeling:
         )
 
     def _network_uv(self, closest: Closest, face: Int64Array) -> Float32Array:
-        weights = barycentric(self.corners[face], closest.point)
-        uv = np.einsum("nc,ncx->nx", weights, self.uvs[face])
+        weights = barycentric(self.mesh.positions[self.mesh.faces[face]], closest.point)
+        uv = np.einsum("nc,ncx->nx", weights, self.mesh.uvs_at(face))
         scaled = (uv - np.asarray(self.table.uv_offset)) / np.asarray(self.table.uv_scale)
         has_uv = self.charts.has_uv[self.charts.face_charts[face]]
         return np.where(has_uv[:, None], scaled, 0.0).astype(np.float32)

@@ -42,17 +42,15 @@ def sides_of(surface: Surface, points: SurfacePoints, winding: Winding | None = 
     cannot be held by a signed distance field. `winding` tells the number where other faces wind
     too; None: that of the surface, by libigl.
     """
-    offset = PROBE * surface.normals[points.faces]
-    probes = np.concatenate([points.positions + offset, points.positions - offset])
-    inside = np.abs((winding or _winding_of(surface))(probes)) > 0.5
-    above, below = np.split(inside, 2)
+    offset = PROBE * surface.normals_at(points.faces)
+    winding = winding or _winding_of(surface)
+    above, below = (np.abs(winding(points.positions + way)) > 0.5 for way in (offset, -offset))
     return Sides(hidden=above & below, sheet=~above & ~below)
 
 
 def _winding_of(surface: Surface) -> Winding:
     import igl
 
-    vertices = np.ascontiguousarray(surface.positions[surface.mesh.faces].reshape(-1, 3))
     tree = igl.FastWindingNumberBVH()
-    tree.init(vertices, np.arange(len(vertices), dtype=np.int64).reshape(-1, 3))
+    tree.init(surface.positions, surface.mesh.faces.astype(np.int64))
     return lambda points: tree.winding_number(points, ACCURACY)

@@ -100,6 +100,10 @@ class Surface:
         """(m, 3): the unit normal of every face, 0 for a face without area."""
         return self._in_blocks(_normals)
 
+    def normals_at(self, faces: Int64Array) -> Float64Array:
+        """(n, 3): the same of some faces (n,), without the others."""
+        return _normals(self.corners_of(faces))
+
     @cached_property
     def opposite_faces(self) -> Int64Array:
         """(m,): the face back to back with each face, -1 where there is none."""

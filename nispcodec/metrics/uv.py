@@ -11,9 +11,7 @@ from nispcodec.metrics.surface import Surface, SurfacePoints
 
 def uv_at(surface: Surface, points: SurfacePoints) -> Float64Array:
     """(n, 2): UVs at points of a surface, origin bottom-left; (0, 0) where the face has none."""
-    uvs: Float64Array = np.einsum(
-        "nk,nkd->nd", points.weights, surface.mesh.corner_uvs[points.faces]
-    )
+    uvs: Float64Array = np.einsum("nk,nkd->nd", points.weights, surface.mesh.uvs_at(points.faces))
     return uvs
 
 
