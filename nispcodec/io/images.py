@@ -95,6 +95,8 @@ class TextureShelf:
             return self._converted("KTX2", name, png_of_ktx2(data, place), place)
         data, image = self._whole(data, place)
         found = str(image.format)
+        if image.mode == "CMYK":  # what it shows differs from program to program
+            found = f"{found} in CMYK"
         if found in _KEPT:
             mime, suffix = _KEPT[found]
             return Texture(self._free_name(_stem(name), suffix), data, mime)

@@ -24,6 +24,7 @@ from nispcodec.format.codings import entropy
 from nispcodec.format.codings.registry import BY_NAME
 from nispcodec.format.records import Record, tensors
 from nispcodec.infer.evaluate import evaluate
+from tests.conformance import found_contents
 from tests.conformance.builder import Row, container
 from tests.conformance.malformed import rows, squeezed
 from tests.conformance.mesh_features import asset, box, mesh_features
@@ -31,6 +32,8 @@ from tests.tiny import field_of, varied
 
 SYMBOL_STEP = 2.0**-9
 ROW_STEP = 2.0**-14
+ROWS_THEN_SAME = bytes.fromhex("29c880 03 04fd02 05fefd 2103 0301 2103 fb04 2103 fe")
+"""Four dense tensors of integers: a step with row shifts, and three times the same step without."""
 
 
 def network(hidden: tuple[int, ...], outputs: int, seed: int, **options: Any) -> Network:
@@ -157,14 +160,15 @@ def features() -> Iterator[tuple[str, bytes]]:
     yield from _messages()
     for name, made in mesh_features(textured().textures[0], textured()):
         yield name, pack(made)
-    yield "mesh-zeros-at-the-end", _zeros_at_the_end()
+    # More bytes of 0 than the faces want.
+    yield "mesh-zeros-at-the-end", _beside_meta(mesh.encode((box(),)) + bytes(7))
+    yield "mesh-far-gates", _beside_meta(found_contents.FAR)
+    yield "mesh-crowded-points", _beside_meta(found_contents.CROWDED)
 
 
-def _zeros_at_the_end() -> bytes:
-    """More bytes of 0 than the faces want."""
-    content = mesh.encode((box(),)) + bytes(7)
-    meta = metadata.encode(asset(box()))
-    return container([Row(b"MESH", content), Row(b"META", meta)])
+def _beside_meta(content: bytes) -> bytes:
+    """A file with this content of MESH."""
+    return container([Row(b"MESH", content), Row(b"META", metadata.encode(asset(box())))])
 
 
 def _codings() -> Iterator[tuple[str, bytes]]:
@@ -189,6 +193,7 @@ def _codings() -> Iterator[tuple[str, bytes]]:
         yield f"coding-delta-init-{number}", pack(varied(plain(), sdf=drawn))
     for width in (1, 2, 3):
         yield f"row-shifts-{width}", pack(varied(plain(), sdf=rows_apart(width)))
+    yield "row-shifts-then-same", container(rows(nets_bytes=ROWS_THEN_SAME))
     yield "wide-tag", _together(moved(NetworkSpec((6, 5, 4), 1), SYMBOL_STEP))
     coarse = varied(plain(), sdf=rows_apart(3))
     for coding in ("dense", "csc", "dia", "entropy"):
@@ -428,6 +433,11 @@ def _shown_as_stored() -> Iterator[tuple[str, bytes]]:
     palette.save(buffer, "png")
     few = Texture("palette.png", buffer.getvalue(), "image/png")
     yield "image-palette", pack(textured(image=few))
+    striped = np.where(np.arange(8)[:, None] % 3 > 0, opaque[0, 0], opaque)
+    color = tuple(striped[0, 1].tolist())
+    for kind, image, clear in (("rgb", striped, color), ("gray", striped[..., 0], color[0])):
+        seen_through = texture("clear.png", "image/png", image, transparency=clear)
+        yield f"image-png-clear-{kind}", pack(textured(image=seen_through))
 
 
 def swapping_profile() -> bytes:

@@ -420,6 +420,15 @@ def _tensors() -> Iterator[Malformed]:
         "symbol-large": large,
     }.items():
         yield Malformed(name, container(rows(None, nets(tensor))), "NETS", "sdf.weight.0")
+    same = b"\x21\x03"
+    between = b"\x09\xd0\x03" + bytes(6) + dense(2) + same + bytes(2) + dense(1)
+    after = container(rows(None, between))
+    yield Malformed("step-same-after-none", after, "NETS", "sdf.weight.1.step")
+    both = meta({2: {1: {1: [2]}, 2: {1: [2]}}, 3: 2, 5: b"\0"})
+    stepped = nets()[: -len(dense(1))] + b"\x09\xd0\x03\0"
+    chart = same + bytes(6) + dense(2) + dense(4) + dense(2)
+    across = container(rows(both, stepped + chart))
+    yield Malformed("step-same-of-another-network", across, "NETS", "chart.weight.0.step")
     yield Malformed("nets-cut", container(rows(None, nets()[:-1])), "NETS", "sdf.bias.1.values")
     yield Malformed("nets-extra", container(rows(None, nets(rest=b"\0"))), "NETS", "end")
     wide = meta({2: {1: {1: [1024, 1024]}}})

@@ -158,6 +158,15 @@ def mesh_features(image: Texture, beside: Document) -> Iterator[tuple[str, Docum
     yield "mesh-parts", painted(image, _partly(), _small(), grid(2, 0.1, origin=(-1, -1, -0.25)))
     yield "mesh-and-field", _joined(beside, dataclasses.replace(_partly(), placements=_apart()))
     yield "mesh-and-openings", _joined(_opened(beside), _small())
+    yield "mesh-parts-overlap", asset(box(), part(box_corners(0.4, (0.3, 0.2, 0.1)), CUBE_FACES))
+    yield "mesh-sheet-in-body", asset(_sheet_in_body())
+    yield "mesh-copy-long-rotation", asset(dataclasses.replace(_wedge(), placements=_longer()))
+    yield "mesh-fan", painted(image, _fan())
+    yield "mesh-wheels", painted(image, _wheels())
+    yield "mesh-book", painted(image, _book())
+    yield "mesh-crowd", painted(image, _crowd(7, 60, 1))
+    yield "mesh-larger-crowd", painted(image, _crowd(12, 80, 0))
+    yield "mesh-many-faces", painted(image, _bumpy())
 
 
 def _joined(beside: Document, *parts: MeshPart) -> Document:
@@ -183,6 +192,16 @@ def _body_and_sheet() -> MeshPart:
     faces = np.concatenate([CUBE_FACES, [[8, 9, 10], [8, 10, 11]]])
     corners = np.concatenate([box_corners(0.5, (-0.2, 0, 0)), sheet])
     return part(corners, faces, sheet=np.arange(14) >= 12, face_charts=np.arange(14) // 6)
+
+
+def _sheet_in_body() -> MeshPart:
+    """A box, and in it six faces around a point that have no inside."""
+    turn = np.arange(6) * np.pi / 3
+    rim = np.stack([0.1 * np.cos(turn), 0.3 * np.sin(turn), 0.1 * np.cos(2 * turn)], axis=1)
+    corners = np.concatenate([box_corners(0.8), rim, [[0.02, 0.01, 0.05]]])
+    fan = np.stack([np.full(6, 14), 8 + np.arange(6), 8 + (np.arange(6) + 1) % 6], axis=1)
+    faces = np.concatenate([CUBE_FACES, fan])
+    return part(corners, faces, sheet=np.arange(18) >= 12, face_charts=np.arange(18) // 12)
 
 
 def _charts() -> MeshPart:
@@ -283,6 +302,89 @@ def soup() -> MeshPart:
     )
 
 
+def _crowd(corners: int, faces: int, seed: int) -> MeshPart:
+    """So many triangles on few corners that some have more faces than are looked at."""
+    generator = np.random.default_rng(seed)
+    made = np.array([generator.permutation(corners)[:3] for _ in range(faces)])
+    places = generator.uniform(-0.8, 0.8, (corners, 3))
+    uvs = generator.random((corners, 2)) ** 3 * 0.3
+    return part(places, made, uvs=uvs, uv_faces=made, sheet=np.ones(faces, np.bool_))
+
+
+def _fan(spokes: int = 20) -> MeshPart:
+    """Two cones over one ring, on a grid of sixteen bits."""
+    turn = np.arange(spokes) * 2 * np.pi / spokes
+    ring = np.stack([0.6 * np.cos(turn), 0.6 * np.sin(turn), 0.1 * np.cos(3 * turn)], axis=1)
+    corners = np.concatenate([ring, [[0.05, 0.0, 0.7], [0.0, 0.05, -0.6]]])
+    here, there = np.arange(spokes), np.roll(np.arange(spokes), -1)
+    top, low = np.full(spokes, spokes), np.full(spokes, spokes + 1)
+    faces = np.concatenate(
+        [np.stack([here, there, top], axis=1), np.stack([there, here, low], axis=1)]
+    )
+    uvs = np.concatenate([ring[:, :2] * 0.4 + 0.5, [[0.5, 0.5], [0.52, 0.48]]])
+    made = part(corners, faces, uvs=uvs, uv_faces=faces)
+    finer = np.random.default_rng(3).integers(0, 64, made.positions.shape)
+    places = (made.positions * 64 + finer).astype(np.int32)
+    return dataclasses.replace(made, positions=places, step=STEP / 64)
+
+
+def _wheels(spokes: int = 24, turn: int = 19) -> MeshPart:
+    """Three wheels over one place in the texture, each of which begins at another spoke."""
+    angle = np.arange(spokes) * 2 * np.pi / spokes
+    rim = np.stack([0.6 * np.cos(angle), 0.6 * np.sin(angle), 0 * angle], axis=1)
+    corners = np.concatenate([rim, [[0.0, 0.0, 0.1]]])
+    here = np.arange(spokes)
+    one = np.stack([np.full(spokes, spokes), here, (here + 1) % spokes], axis=1)
+    turned = [np.roll(one, -turn * copy, axis=0) for copy in range(3)]
+    return part(
+        np.concatenate([corners + np.array([0, 0, (copy - 1) / 2]) for copy in range(3)]),
+        np.concatenate([each + copy * (spokes + 1) for copy, each in enumerate(turned)]),
+        uvs=np.concatenate([rim[:, :2] * 0.6 + 0.5, [[0.5, 0.5]]]),
+        uv_faces=np.concatenate(turned),
+        face_charts=np.repeat(range(3), spokes),
+        sheet=np.ones(3 * spokes, np.bool_),
+    )
+
+
+def _book(pages: int = 18, again: int = 15) -> MeshPart:
+    """Triangles that have one edge of the texture in common, the last three on the sixteenth."""
+    order = [*range(pages), again, again]
+    tips = [[0.15 + 0.04 * page, 0.5 + 0.01 * (page % 3)] for page in range(pages)]
+    corners = [
+        place
+        for height, page in zip(np.linspace(-0.8, 0.72, len(order)), order, strict=True)
+        for place in (
+            [-0.5, -0.4, height],
+            [-0.5, 0.4, height + 0.01],
+            [-0.4 + 0.04 * page, 0.0, height],
+        )
+    ]
+    return part(
+        np.array(corners),
+        np.arange(3 * len(order)).reshape(-1, 3),
+        uvs=np.array([[0.1, 0.1], [0.1, 0.9], *tips]),
+        uv_faces=np.array([[0, 1, 2 + page] for page in order]),
+        face_charts=np.arange(len(order)),
+        sheet=np.ones(len(order), np.bool_),
+    )
+
+
+def _bumpy(side: int = 12) -> MeshPart:
+    """A sheet of so many faces that counters are full, everything a little off."""
+    generator, made = np.random.default_rng(1), grid(side)
+    count = len(made.positions)
+    places = made.positions * STEP - 1 + generator.normal(0, (0.02, 0.02, 0.05), (count, 3))
+    uvs = made.uvs * UV_STEP + generator.normal(0, 0.01, (count, 2))
+    faces = made.faces
+    return part(
+        places.clip(-1, 1),
+        faces,
+        uvs=uvs.clip(0, 1),
+        uv_faces=faces,
+        sheet=np.ones(len(faces), np.bool_),
+    )
+
+
 def _fine() -> MeshPart:
     """A grid of twenty bits, an origin and a step that are no powers of two."""
     generator = np.random.default_rng(9)
@@ -329,6 +431,12 @@ def _copies() -> tuple[Placement, ...]:
             materials=others,
         ),
     )
+
+
+def _longer() -> tuple[Placement, ...]:
+    """A copy whose quaternion is as long as it may be: readers divide by its length."""
+    w, x, y, z = _turn(5, 1, -2, 3)
+    return (Placement((1.00045 * w, 1.00045 * x, 1.00045 * y, 1.00045 * z), (0.25, 0.0, 0.25)),)
 
 
 def _mirrored() -> tuple[Placement, ...]:

@@ -40,6 +40,17 @@ def test_web_formats_keep_their_bytes_whatever_their_name(
     assert warnings == []
 
 
+def test_a_jpeg_in_cmyk_becomes_png_with_a_warning() -> None:
+    textures, warnings = shelf()
+    buffer = io.BytesIO()
+    PIL.Image.new("CMYK", (8, 8), (0, 255, 255, 0)).save(buffer, "JPEG")
+    textures.add("a.jpg", buffer.getvalue(), "a.jpg")
+    (texture,) = textures.textures
+    assert texture.name == "a.png"
+    assert np.allclose(decode_image(texture)[0, 0], (1, 0, 0, 1), atol=0.02)
+    assert warnings == ["a.jpg: a JPEG in CMYK image, converted to PNG"]
+
+
 @pytest.mark.parametrize("format", ["TGA", "BMP", "TIFF", "GIF"])
 def test_other_formats_become_png_with_a_warning(format: str) -> None:
     textures, warnings = shelf()

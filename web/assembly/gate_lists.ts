@@ -6,11 +6,15 @@ const ROOM = 6;
 let lists: Ints = changetype<Ints>(0);
 let counts: Ints = changetype<Ints>(0);
 let rooms: Ints = changetype<Ints>(0);
+/** Of each gate, in the list of its point. */
+let places: Ints = changetype<Ints>(0);
 
+/** At most so many points, and gates. */
 export function beginLists(points: i32): void {
   lists = ints(points);
   counts = ints(points);
   rooms = ints(points);
+  places = ints(points);
 }
 
 /** The list grows by doubling. */
@@ -22,22 +26,17 @@ export function appendGate(point: i32, gate: i32): void {
     memory.copy(larger, lists[point], count << 2);
     lists[point] = <i32>larger;
   }
+  places[gate] = count;
   changetype<Ints>(lists[point])[count] = gate;
   counts[point]++;
 }
 
+/** Where it was the last one is now. */
 export function dropGate(point: i32, gate: i32): void {
   const list = changetype<Ints>(lists[point]);
-  let low = 0;
-  let high = --counts[point];
-  const last = high;
-  while (low < high) {
-    const middle = (low + high) >> 1;
-    if (list[middle] < gate) low = middle + 1;
-    else high = middle;
-  }
-  const place = lists[point] + (low << 2);
-  memory.copy(place, place + 4, (last - low) << 2);
+  const last = list[--counts[point]];
+  list[places[gate]] = last;
+  places[last] = places[gate];
 }
 
 export function gateCount(point: i32): i32 {

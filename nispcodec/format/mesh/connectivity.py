@@ -64,7 +64,8 @@ class Growth:
         self._state: list[int] = []
         self._side: list[int] = []
         self._gate: dict[int, int] = {}
-        self._gates_at: list[dict[int, None]] = []
+        self._gates_at: list[list[int]] = []
+        self._place: list[int] = []
         self._degree: list[int] = []
         self._point_of: dict[int, int] = {}
         self._buckets: list[list[int]] = [[] for _ in range(BUCKETS)]
@@ -101,7 +102,7 @@ class Growth:
 
     def _point(self) -> int:
         self._degree.append(0)
-        self._gates_at.append({})
+        self._gates_at.append([])
         self.surface.points += 1
         return self.surface.points - 1
 
@@ -128,7 +129,8 @@ class Growth:
         self._next.append(gate)
         self._previous.append(gate)
         self._state.append(OPEN)
-        self._gates_at[start][gate] = None
+        self._place.append(len(self._gates_at[start]))
+        self._gates_at[start].append(gate)
         if self._known is not None:
             self._gate[side] = gate
         return gate
@@ -279,8 +281,8 @@ class Growth:
     def _far(self, third: int) -> int:
         coder, encodes = self._coder, self._coder.encodes
         point = coder.below(self._start[third] if encodes else 0, self.surface.points, "point")
-        gates = list(self._gates_at[point])
-        return gates[coder.below(gates.index(third) if encodes else 0, len(gates), "gate")]
+        gates = self._gates_at[point]
+        return gates[coder.below(self._place[third] if encodes else 0, len(gates), "gate")]
 
     def _insert(self, gate: int, point: int, third: int | None, face: int) -> tuple[int, int]:
         """A face over a gate; where its point is known, it is where the gate `third` begins.
@@ -308,8 +310,12 @@ class Growth:
         self.surface.twin[side], self.surface.twin[other] = other, side
 
     def _remove(self, gate: int) -> None:
+        """Where it was among the gates at its point the last of these is now: no other moves."""
         self._state[gate] = GONE
-        del self._gates_at[self._start[gate]][gate]
+        gates, place = self._gates_at[self._start[gate]], self._place[gate]
+        last = gates.pop()
+        if last != gate:
+            gates[place], self._place[last] = last, place
 
     def _close(self, gate: int, other: int) -> None:
         """Two gates of a loop of their own are one edge: the loop is gone."""
