@@ -435,9 +435,10 @@ def _shown_as_stored() -> Iterator[tuple[str, bytes]]:
     yield "image-palette", pack(textured(image=few))
     striped = np.where(np.arange(8)[:, None] % 3 > 0, opaque[0, 0], opaque)
     color = tuple(striped[0, 1].tolist())
-    for kind, image, clear in (("rgb", striped, color), ("gray", striped[..., 0], color[0])):
-        seen_through = texture("clear.png", "image/png", image, transparency=clear)
-        yield f"image-png-clear-{kind}", pack(textured(image=seen_through))
+    clear = texture("clear.png", "image/png", striped, transparency=color)
+    yield "image-png-clear-rgb", pack(textured(image=clear))
+    clear = texture("clear.png", "image/png", striped[..., 0], transparency=color[0])
+    yield "image-png-clear-gray", pack(textured(image=clear))
 
 
 def swapping_profile() -> bytes:
