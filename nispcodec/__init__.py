@@ -85,14 +85,14 @@ def load_mesh(path: str | Path) -> TexturedMesh:
 
 
 def write_mesh(mesh: TexturedMesh, path: str | Path) -> list[Path]:
-    """Write GLB, OBJ, PLY or STL, by the path's suffix -> the files written, `path` last.
+    """Write GLB, glTF, OBJ, PLY, STL or USDZ, by the path's suffix -> the files, `path` last.
 
-    An OBJ has its MTL and its images beside it. Each file is written whole or not at all. Raises
-    MeshError for an unknown suffix or a mesh without faces, NispError when writing fails.
+    A glTF has its buffer and images beside it, an OBJ its MTL and images, a PLY its images. Each
+    file is written whole or not at all. What the format cannot hold is left out, and warned of as
+    `NispWarning`. Raises MeshError for an unknown suffix or a mesh without faces, NispError when
+    writing fails.
     """
-    from nispcodec.io.save import write_mesh as write
-
-    return write(mesh, path)
+    return mesh.save(path)
 
 
 def encode(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -114,3 +115,17 @@ def test_what_is_left_out_of_a_file_is_a_python_warning(tmp_path: Path) -> None:
     path.write_text(path.read_text() + "usemtl nowhere\nf 1 2 3\n")
     with pytest.warns(nispcodec.NispWarning, match="material 'nowhere' is in no material file"):
         nispcodec.encode(path, tuning=small(300, 100, 0, 100, 20))
+
+
+def test_what_a_format_cannot_hold_is_a_python_warning(
+    tmp_path: Path, recwarn: pytest.WarningsRecorder
+) -> None:
+    plain = box_asset()
+    masked = tuple(replace(each, alpha_mode="mask") for each in plain.materials)
+    mesh = replace(plain, materials=masked)
+    mesh.save(tmp_path / "a.glb")
+    assert not recwarn.list
+    for write in (mesh.save, partial(nispcodec.write_mesh, mesh)):
+        with pytest.warns(nispcodec.NispWarning, match="left out alpha modes") as caught:
+            write(tmp_path / "a.obj")
+        assert {each.filename for each in caught} == {__file__}

@@ -15,6 +15,7 @@ import numpy as np
 
 from nispcodec.core.arrays import AnyArray, BoolArray, Float64Array, Int32Array, IntArray
 from nispcodec.core.errors import MeshError
+from nispcodec.core.progress import warn
 from nispcodec.core.slots import SLOTS
 
 WRAPS = ("repeat", "clamp", "mirror")
@@ -116,11 +117,13 @@ class TexturedMesh:
     def save(self, path: str | Path) -> list[Path]:
         """Write the mesh in the format of the path's suffix -> the files written.
 
-        Raises MeshError and NispError as `nispcodec.write_mesh` does.
+        Warns and raises as `nispcodec.write_mesh` does.
         """
-        from nispcodec.io.save import write_mesh
+        from nispcodec.io.save import losses, write_mesh
 
-        return write_mesh(self, path)
+        files = write_mesh(self, path)
+        warn(losses(self, path))
+        return files
 
     @staticmethod
     def geometry_only(positions: Float64Array, faces: IntArray, name: str) -> TexturedMesh:
