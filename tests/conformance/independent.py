@@ -22,6 +22,8 @@ CAPS = independent_meta.CAPS
 NETWORKS = ("sdf", "chart", "uv")
 KNOWN = ("MESH", "META", "NETS", "TXTR")
 FORMATS = ("PNG", "JPEG", "WEBP", "AVIF")
+STEP = 1e-6
+"""Differences over so much stand for derivatives; all is float64."""
 
 
 class Reader:
@@ -80,6 +82,16 @@ class Reader:
         """The signed distance, normalized frame."""
         field, mesh = self.distances(point)
         return min(field, mesh) if self.parts else field
+
+    def normal(self, point: list[float]) -> list[float]:
+        """The gradient of the distance, divided by its length; 0 where it is 0."""
+        slopes = []
+        for axis in range(3):
+            ends = [[t + way * (i == axis) for i, t in enumerate(point)] for way in (STEP, -STEP)]
+            ahead, behind = (self.distance(end) for end in ends)
+            slopes.append((ahead - behind) / (2 * STEP))
+        length = math.hypot(*slopes)
+        return [slope / (length or 1.0) for slope in slopes]
 
     def chart(self, point: list[float], closed: int = 0) -> int:
         """That of the part which is nearest, of the field's but for the last `closed`."""

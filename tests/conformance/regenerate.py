@@ -25,7 +25,14 @@ from tests.conformance.independent import DECODER, Reader
 from tests.conformance.malformed import all_malformed
 
 HERE = Path(__file__).parent
-TOLERANCE = {"sdf": 1e-4, "mesh_sdf": 1e-5, "uv": 1e-4, "color": 0.01, "logit_margin": 1e-3}
+TOLERANCE = {
+    "sdf": 1e-4,
+    "mesh_sdf": 1e-5,
+    "normal": 1e-3,
+    "uv": 1e-4,
+    "color": 0.01,
+    "logit_margin": 1e-3,
+}
 APART = 1e-3
 """By how much distances differ at least, and how far points are from the surface."""
 UV_APART = 1e-5
@@ -50,6 +57,7 @@ def answers(data: bytes) -> dict[str, Any]:
         "document": described(reader),
         "points": points.tolist(),
         "sdf": [reader.distance(point) for point, _ in pairs],
+        "normal": [reader.normal(point) for point, _ in pairs],
         "chart": charts,
         "uv": [reader.uv(point, chart) for point, chart in pairs],
         "color": [reader.color(point) for point, _ in pairs],

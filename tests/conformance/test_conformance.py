@@ -54,6 +54,7 @@ def check_the_library(path: Path) -> None:
     points = wanted["points"]
     kind = "sdf" if document.field else "mesh_sdf"
     assert close(model.sdf(points, "normalized"), wanted["sdf"], kind)
+    assert close(model.normals(points, "normalized"), wanted["normal"], "normal")
     assert (model.charts(points, "normalized") == wanted["chart"]).all()
     uvs = model.uv(points, "normalized")
     assert close(uvs, wanted["uv"], "uv", uv_scale(document))
@@ -82,6 +83,7 @@ def test_the_specification_answers(path: Path) -> None:
         assert chart == wanted["chart"][row]
         kind = "sdf" if reader.specs else "mesh_sdf"
         assert close(reader.distance(point), wanted["sdf"][row], kind)
+        assert close(reader.normal(point), wanted["normal"][row], "normal")
         if "other_chart" in wanted:
             found = reader.uv(point, wanted["other_chart"][row])
             assert close(found, wanted["other_uv"][row], "uv")
