@@ -110,7 +110,7 @@ class MeshForm:
 
     def forget(self) -> None:
         """Free trees of the asset, which grow again for the next question."""
-        self.simplifier.source.tree.forget()
+        self.simplifier.source.forget()
         self.simplifier.original.tree.forget()
 
     def errors(self, document: Document) -> Errors:

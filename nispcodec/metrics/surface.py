@@ -86,7 +86,7 @@ class Surface:
         """(m, 3, 3): the corners of every face, normalized frame."""
         return self.positions[self.mesh.faces]
 
-    def corners_of(self, faces: Int64Array | BoolArray | slice) -> Float64Array:
+    def corners_of(self, faces: Int64Array | BoolArray) -> Float64Array:
         """(n, 3, 3): those of some faces, which take less memory than all of them."""
         return self.positions[self.mesh.faces[faces]]
 
@@ -102,7 +102,7 @@ class Surface:
 
     def normals_at(self, faces: Int64Array) -> Float64Array:
         """(n, 3): the same of some faces (n,), without the others."""
-        return _normals(self.corners_of(faces))
+        return self._in_blocks(_normals, faces)
 
     @cached_property
     def opposite_faces(self) -> Int64Array:
@@ -169,10 +169,15 @@ class Surface:
         positions: Float64Array = np.einsum("nk,nkd->nd", weights, self.corners_of(faces))
         return positions
 
-    def _in_blocks(self, measure: Callable[[Float64Array], Float64Array]) -> Float64Array:
-        """(m, ...) of corners (k, 3, 3), some faces at a time: all of them take much memory."""
-        starts = range(0, max(len(self.mesh.faces), 1), BLOCK)
-        return np.concatenate([measure(self.corners_of(slice(at, at + BLOCK))) for at in starts])
+    def _in_blocks(
+        self,
+        measure: Callable[[Float64Array], Float64Array],
+        chosen: Int64Array | slice = slice(None),
+    ) -> Float64Array:
+        """(n, ...) of corners (k, 3, 3), some faces at a time: those of all take much memory."""
+        ends = self.mesh.faces[chosen]
+        starts = range(0, max(len(ends), 1), BLOCK)
+        return np.concatenate([measure(self.positions[ends[at : at + BLOCK]]) for at in starts])
 
     @cached_property
     def _solid(self) -> Int64Array:

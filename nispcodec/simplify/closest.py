@@ -38,8 +38,9 @@ class Tree:
         return Hits(which[found.faces], found.weights, found.positions)
 
     def forget(self) -> None:
-        """Free the tree itself, which grows again for the next question."""
-        vars(self).pop("_solid", None)
+        """Free all but the triangles; it grows again for the next question."""
+        for name in ("normals", "areas", "_crosses", "_solid", "_which"):
+            vars(self).pop(name, None)
 
     @property
     def is_flat(self) -> bool:

@@ -25,6 +25,11 @@ class Source:
         """For closest points."""
         return Tree(self.triangles.corners)
 
+    def forget(self) -> None:
+        """Free what takes most memory; it is computed again for the next question."""
+        self.tree.forget()
+        vars(self).pop("corner_normals", None)
+
     @cached_property
     def corner_normals(self) -> Float64Array:
         """(m, 3, 3): the normals that corners are shaded with; creases must be known."""
