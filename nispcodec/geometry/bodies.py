@@ -162,8 +162,18 @@ def _unrounded(
 ) -> Int64Array:
     """The places, those joined whose positions rounding alone holds apart: copies have such."""
     at = np.unique(positions, return_index=True)[1]
-    pairs = cKDTree(corners.reshape(-1, 3)[at]).query_pairs(config.gap, output_type="ndarray")
+    pairs = _near(corners.reshape(-1, 3)[at], config.gap, config.partners)
     return _joined(places, places.reshape(-1)[at][pairs])
+
+
+def _near(spots: Float64Array, distance: float, most: int) -> Int64Array:
+    """(k, 2): the spots (n, 3) closer than that to each, at most so many of the nearest.
+
+    Not all of them: beside a far outlier a whole asset is closer, each spot to every other.
+    """
+    _, found = cKDTree(spots).query(spots, range(1, most + 2), distance_upper_bound=distance)
+    one, which = np.nonzero((found < len(spots)) & (found != np.arange(len(spots))[:, None]))
+    return np.stack([one, found[one, which]], axis=1)
 
 
 def _joined(positions: Int64Array, pairs: Int64Array) -> Int64Array:
@@ -186,7 +196,7 @@ def _seams_welded(
     ends = np.stack([corner, (corner + 1) % 3], axis=1)
     name, at = np.unique(sheet.places[face[:, None], ends], return_index=True)
     spots = corners[sheet.faces[face[:, None]], ends].reshape(-1, 3)[at]
-    pairs = cKDTree(spots).query_pairs(config.weld, output_type="ndarray")
+    pairs = _near(spots, config.weld, config.partners)
     if not len(pairs):
         return positions, 0
     gaps = np.linalg.norm(spots[pairs[:, 0]] - spots[pairs[:, 1]], axis=1)

@@ -49,6 +49,7 @@ class SolidConfig:
                       precision opens seams; at 1e-5 thin parts of a real asset were joined
     gap               ... and those further apart are told of: single precision, at the radius,
                       leaves 6e-8 between them, and nobody sees that
+    partners          positions at most that one is joined with itself; those are with others
     clear_majority    an open patch, of which some was wound against the rest, is the right way
                       round with such a majority of its area
     bulge             an open patch that holds such a volume, for its area^1.5, has an outside: a
@@ -87,6 +88,7 @@ class SolidConfig:
     rim_step: float = 0.02
     weld: float = 1e-6
     gap: float = 2e-7
+    partners: int = 4
     clear_majority: float = 0.2
     bulge: float = 0.02
     crossing: float = 0.02

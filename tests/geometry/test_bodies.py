@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import tracemalloc
 from collections.abc import Callable
 
 import igl
@@ -242,3 +243,16 @@ def test_warnings_say_what_was_done_and_to_how_much() -> None:
     assert any("seams" in each for each in solid_of(cracked(BALL, 1e-7)).warnings)
     assert any("could not tell" in each for each in solid_of(some(GROUND, 0.5)).warnings)
     assert solid_of(both_ways(GROUND)).warnings == ()
+
+
+def test_beside_a_far_outlier_memory_goes_with_the_faces() -> None:
+    generator = np.random.default_rng(0)
+    crowd = 1e-9 * generator.uniform(-1, 1, (1500, 3, 3))
+    outlier = np.array([[[1.0, 0, 0], [1, 1e-9, 0], [1, 0, 1e-9]]])
+    corners = np.concatenate([crowd, outlier])
+    tracemalloc.start()
+    found = bodies_of(corners)
+    peak = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    assert len(found.body) == len(corners)
+    assert peak < 40e6
