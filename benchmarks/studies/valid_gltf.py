@@ -2,7 +2,7 @@
 
     python -m benchmarks.studies.valid_gltf --models DIR [--only spot]
 
-DIR holds NAME.nisp, of `nisp encode --preset fast`. Wants node, and
+DIR holds NAME.nisp. Wants node, and
 `npm install --prefix build/node gltf-validator@2.0.0-dev.3.10`.
 """
 
