@@ -26,7 +26,7 @@ from nispcodec.format.records import Record, tensors
 from nispcodec.infer.evaluate import evaluate
 from tests.conformance import found_contents
 from tests.conformance.builder import Row, container
-from tests.conformance.malformed import rows, squeezed
+from tests.conformance.malformed import meta, rows, squeezed
 from tests.conformance.mesh_features import asset, box, mesh_features
 from tests.tiny import field_of, varied
 
@@ -525,6 +525,15 @@ def _containers() -> Iterator[tuple[str, bytes]]:
     yield "textures-two-alike", pack(dataclasses.replace(textured(), textures=_twins()))
     for minor in (9, 255):
         yield f"minor-version-{minor}", container(rows(), minor=minor)
+    described = meta({10: {"note": "again " * 60}})
+    asking = Row(b"META", _with_widest_window(squeezed(described)), 3, decoded=len(described))
+    yield "zstd-window", container([asking, *rows()[1:]])
+
+
+def _with_widest_window(frame: bytes) -> bytes:
+    """A zstd frame of 256 bytes to 64 kB that asks for the widest window that readers accept."""
+    assert frame[4] == 0x60
+    return frame[:4] + b"\x40\xa8" + frame[5:]
 
 
 def _twins() -> tuple[Texture, Texture]:
