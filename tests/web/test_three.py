@@ -7,13 +7,16 @@ import json
 import threading
 from collections.abc import Iterator
 from http.server import SimpleHTTPRequestHandler, ThreadingHTTPServer
+from math import isqrt
 from pathlib import Path
 from typing import Any, ClassVar
 
 import numpy as np
 import pytest
 
+from nispcodec.core.document import ChartTable, Document
 from nispcodec.format import pack
+from nispcodec.metrics.psnr import psnr as psnr_of_error
 from nispcodec.model import NispModel
 from tests import tiny
 from tests.web.mesh_documents import documents
@@ -39,10 +42,24 @@ class Served(SimpleHTTPRequestHandler):
         """Nothing."""
 
 
+def models() -> dict[str, Document]:
+    """Fields of two kinds, one half of which is an opening, one beside a mesh; a mesh alone."""
+    sphere = tiny.document(tiny.sphere(width=64))
+    half = ChartTable(np.zeros(2, np.int32), np.array([True, False]), openings=True)
+    opening = tiny.varied(tiny.document(), charts=half)
+    mixed, copies = (documents()[name] for name in ("mixed", "copies"))
+    return {
+        "model": tiny.document(),
+        "sphere": sphere,
+        "opening": opening,
+        "mixed": mixed,
+        "copies": copies,
+    }
+
+
 @pytest.fixture
 def address(monkeypatch: pytest.MonkeyPatch) -> Iterator[str]:
-    models = {"model": tiny.document(), "copies": documents()["copies"]}
-    held = {f"/three/{name}.nisp": pack(each) for name, each in models.items()}
+    held = {f"/three/{name}.nisp": pack(each) for name, each in models().items()}
     monkeypatch.setattr(Served, "models", held)
     handler = functools.partial(Served, directory=str(WEB))
     with ThreadingHTTPServer(("127.0.0.1", 0), handler) as server:
@@ -96,3 +113,30 @@ def test_the_loader_hands_over_mesh_parts(address: str, tmp_path: Path) -> None:
     low, high = (np.array([each[end] for each in meshes]) for end in ("low", "high"))
     assert np.abs(low.min(axis=0) - wanted.min(axis=0)).max() < 1e-4
     assert np.abs(high.max(axis=0) - wanted.max(axis=0)).max() < 1e-4
+
+
+@pytest.mark.slow
+def test_both_renderers_draw_a_field_alike_among_meshes(address: str) -> None:
+    npm_package("playwright-core")
+    npm_package("three")
+    names = [f"{name}.nisp" for name in ("model", "sphere", "opening", "mixed")]
+    said = run_node(HERE / "field_pictures.mjs", chromium(), address, *names, timeout=900)
+    found = json.loads(said)
+    if found["adapter"] is None:
+        pytest.skip("webgpu: Chromium has no adapter")
+    assert found["said"] == []
+    for name in names:
+        webgl, webgpu = (seen_by(found["models"][name][kind]) for kind in ("field", "field_webgpu"))
+        for view in ("perspective", "orthographic", "alone"):
+            error = float(np.mean((webgl[view] - webgpu[view]) ** 2))
+            assert psnr_of_error(error, peak=255) >= 40, (name, view)
+        # Of the field the upper half is in front of the floor, the lower behind.
+        whole = webgpu["alone"].max(axis=-1) > 0
+        in_front = np.abs(webgpu["perspective"] - webgpu["alone"]).max(axis=-1) <= 2
+        assert 0.4 < in_front[whole].mean() < 0.8, name
+
+
+def seen_by(pictures: dict[str, list[int]]) -> dict[str, Any]:
+    """RGB of square pictures."""
+    arrays = {view: np.array(pixels, float).reshape(-1, 4) for view, pixels in pictures.items()}
+    return {view: each[:, :3].reshape(isqrt(len(each)), -1, 3) for view, each in arrays.items()}

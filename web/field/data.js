@@ -17,13 +17,14 @@ const HEADER = 4;
  * group of 4 outputs one texel of biases, and for each input one texel of 4 weights. A chart's
  * embedding takes one texel for each number; its affine map one for each coordinate, then its offset.
  *
- * At the end there is a texel for each chart: its material, and 1 where it has texture coordinates.
+ * At the end there is a texel for each chart, which the caller gives.
  *
  * @param {import("../decoder/document.js").Document} document
+ * @param {number[][]} charts texels, of 4 numbers
  * @returns {{texels: Float32Array, height: number, groups: number, at: number}} groups: of 4 in the
  *     widest layer; at: the first chart's texel
  */
-export function packField({ metadata, tensors }) {
+export function packField({ metadata, tensors }, charts) {
   const packer = new Packer();
   let widest = 1;
   for (let i = 0; i < 3 * HEADER; i++) packer.put(0, 0, 0, 0);
@@ -35,7 +36,7 @@ export function packField({ metadata, tensors }) {
     widest = Math.max(widest, inputCount(spec), ...spec.hidden);
   });
   const at = packer.at;
-  metadata.chartMaterials.forEach((material, i) => packer.put(material, metadata.chartHasUv[i] ? 1 : 0, 0, 0));
+  for (const texel of charts) packer.put(...texel);
   return { ...packer.finish(), groups: Math.ceil(widest / 4), at };
 }
 

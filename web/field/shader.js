@@ -7,10 +7,10 @@ export const FIELD_GLSL = `
 precision highp float;
 precision highp int;
 precision highp sampler2D;
-precision highp usampler3D;
+precision highp sampler3D;
 
 uniform sampler2D nispData;
-uniform usampler3D nispOccupancy;
+uniform sampler3D nispOccupancy;
 uniform float nispSlope;
 uniform int nispOpening;
 
@@ -165,7 +165,7 @@ float nispFree(vec3 p, vec3 direction) {
   int size = textureSize(nispOccupancy, 0).x;
   float cell = 2.0 * NISP_CUBE / float(size);
   ivec3 place = clamp(ivec3(floor((p + NISP_CUBE) / cell)), ivec3(0), ivec3(size - 1));
-  float away = float(texelFetch(nispOccupancy, place, 0).x);
+  float away = floor(255.0 * texelFetch(nispOccupancy, place, 0).x + 0.5);
   if (away == 0.0) return 0.0;
   vec3 low = (vec3(place) - (away - 1.0)) * cell - NISP_CUBE;
   vec3 high = low + (2.0 * away - 1.0) * cell;

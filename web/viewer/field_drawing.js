@@ -10,7 +10,8 @@ export class FieldDrawing {
   constructor(gl, model) {
     this.gl = gl;
     this.metadata = model.metadata;
-    const packed = packField(model.document);
+    const { chartMaterials, chartHasUv } = model.metadata;
+    const packed = packField(model.document, Array.from(chartMaterials, (material, i) => [material, chartHasUv[i] ? 1 : 0, 0, 0]));
     this.groups = packed.groups;
     this.occupancy = occupancyOf(/** @type {import("../evaluate/field.js").FieldQueries} */ (model.field).sdfNetwork);
     this.chartTable = packed.at;
@@ -39,7 +40,7 @@ export class FieldDrawing {
     const texture = gl.createTexture();
     gl.bindTexture(gl.TEXTURE_3D, texture);
     gl.pixelStorei(gl.UNPACK_ALIGNMENT, 1);
-    gl.texImage3D(gl.TEXTURE_3D, 0, gl.R8UI, size, size, size, 0, gl.RED_INTEGER, gl.UNSIGNED_BYTE, cells);
+    gl.texImage3D(gl.TEXTURE_3D, 0, gl.R8, size, size, size, 0, gl.RED, gl.UNSIGNED_BYTE, cells);
     gl.pixelStorei(gl.UNPACK_ALIGNMENT, 4);
     this.unfiltered(gl.TEXTURE_3D);
     return texture;
