@@ -122,18 +122,19 @@ def test_both_renderers_draw_a_field_alike_among_meshes(address: str) -> None:
     names = [f"{name}.nisp" for name in ("model", "sphere", "opening", "mixed")]
     said = run_node(HERE / "field_pictures.mjs", chromium(), address, *names, timeout=900)
     found = json.loads(said)
-    if found["adapter"] is None:
-        pytest.skip("webgpu: Chromium has no adapter")
     assert found["said"] == []
-    for name in names:
-        webgl, webgpu = (seen_by(found["models"][name][kind]) for kind in ("field", "field_webgpu"))
-        for view in ("perspective", "orthographic", "alone"):
-            error = float(np.mean((webgl[view] - webgpu[view]) ** 2))
-            assert psnr_of_error(error, peak=255) >= 40, (name, view)
+    for name, seen in found["models"].items():
+        webgl = seen_by(seen.pop("webgl"))
+        for kind, pictures in seen.items():
+            for view, picture in seen_by(pictures).items():
+                error = float(np.mean((webgl[view] - picture) ** 2))
+                assert psnr_of_error(error, peak=255) >= 40, (name, kind, view)
         # Of the field the upper half is in front of the floor, the lower behind.
-        whole = webgpu["alone"].max(axis=-1) > 0
-        in_front = np.abs(webgpu["perspective"] - webgpu["alone"]).max(axis=-1) <= 2
+        whole = webgl["alone"].max(axis=-1) > 0
+        in_front = np.abs(webgl["perspective"] - webgl["alone"]).max(axis=-1) <= 2
         assert 0.4 < in_front[whole].mean() < 0.8, name
+    if not all("webgpu" in seen for seen in found["models"].values()):
+        pytest.skip("webgpu: Chromium has no adapter; its fallback was compared")
 
 
 def seen_by(pictures: dict[str, list[int]]) -> dict[str, Any]:

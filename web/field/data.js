@@ -11,7 +11,7 @@ const HEADER = 4;
  *     0  first layer's texel; layers; charts; outputs
  *     1  mirror; fourier levels; conditioning (0 none, 1 scalar, 2 chart_affine); coordinates
  *     2  activation (0 sine, 1 relu); output (0 identity, 1 tanh, 2 sigmoid); embedding's texel; affine's texel
- *     3  numbers of the embedding; inputs; unused; unused
+ *     3  numbers of the embedding; inputs; slope; chart of openings, -1 without (the last two alike in all)
  *
  * A layer has one texel (input groups of 4, output groups, weights' texel, 0). Its weights are for each
  * group of 4 outputs one texel of biases, and for each input one texel of 4 weights. A chart's
@@ -21,18 +21,20 @@ const HEADER = 4;
  *
  * @param {import("../decoder/document.js").Document} document
  * @param {number[][]} charts texels, of 4 numbers
+ * @param {number} slope how fast the distance may grow, from occupancy.js
  * @returns {{texels: Float32Array, height: number, groups: number, at: number}} groups: of 4 in the
  *     widest layer; at: the first chart's texel
  */
-export function packField({ metadata, tensors }, charts) {
+export function packField({ metadata, tensors }, charts, slope) {
   const packer = new Packer();
+  const opening = metadata.openings ? metadata.charts - 1 : -1;
   let widest = 1;
   for (let i = 0; i < 3 * HEADER; i++) packer.put(0, 0, 0, 0);
   ["sdf", "chart", "uv"].forEach((name, number) => {
     const spec = metadata.specs.get(name);
     const held = tensors.get(name);
     if (!spec || !held) return;
-    packer.network(number * HEADER, spec, (tensor) => held.get(tensor)?.values ?? new Float32Array(0));
+    packer.network(number * HEADER, spec, (tensor) => held.get(tensor)?.values ?? new Float32Array(0), [slope, opening]);
     widest = Math.max(widest, inputCount(spec), ...spec.hidden);
   });
   const at = packer.at;
@@ -59,8 +61,9 @@ class Packer {
    * @param {number} header its texel
    * @param {import("../decoder/topology.js").Spec} spec
    * @param {(name: string) => Float32Array} tensor
+   * @param {number[]} ends two numbers that end the header
    */
-  network(header, spec, tensor) {
+  network(header, spec, tensor, ends) {
     const conditioning = ["none", "scalar", "chart_affine"].indexOf(spec.conditioning);
     const embedding = this.at;
     for (const value of tensor("embedding")) this.put(value, 0, 0, 0);
@@ -75,7 +78,7 @@ class Packer {
       ...[first, layers.length, spec.charts, spec.outputs],
       ...[spec.mirror, spec.levels, conditioning, coordinateCount(spec)],
       ...[spec.activation === "sine" ? 0 : 1, ["identity", "tanh", "sigmoid"].indexOf(spec.output), embedding, affine],
-      ...[spec.embedding, inputCount(spec), 0, 0],
+      ...[spec.embedding, inputCount(spec), ...ends],
     );
   }
 

@@ -1,19 +1,9 @@
 /**
  * GLSL (ES 3.00) that evaluates a model's networks from the texels of data.js, and traces rays to
  * their surface. Weights are data: the text is the same for every file, but for NISP_GROUPS, the
- * groups of 4 in the widest layer.
+ * groups of 4 in the widest layer. The caller declares two uniforms, as FIELD_GLSL does.
  */
-export const FIELD_GLSL = `
-precision highp float;
-precision highp int;
-precision highp sampler2D;
-precision highp sampler3D;
-
-uniform sampler2D nispData;
-uniform sampler3D nispOccupancy;
-uniform float nispSlope;
-uniform int nispOpening;
-
+export const FIELD_FUNCTIONS_GLSL = `
 const int NISP_SDF = 0, NISP_CHART = 4, NISP_UV = 8;
 const float NISP_BALL = 1.01, NISP_CUBE = 1.02;
 // A ray that grazes the surface goes on by so much at least; it has met it when as near as that.
@@ -30,6 +20,7 @@ const int NISP_STEPS = 400, NISP_LAYERS_SEEN = 8;
 vec4 nispIn[NISP_GROUPS];
 vec4 nispOut[NISP_GROUPS];
 int nispCalls;
+float nispSlope;
 
 vec4 nispTexel(int at) {
   return texelFetch(nispData, ivec2(at & 1023, at >> 10), 0);
@@ -252,6 +243,8 @@ struct NispHit {
 NispHit nispTrace(vec3 origin, vec3 direction) {
   NispHit hit;
   hit.distance = -1.0;
+  vec2 held = nispTexel(NISP_SDF + 3).zw;
+  nispSlope = held.x;
   float along = -dot(origin, direction);
   float half_chord = NISP_BALL * NISP_BALL - (dot(origin, origin) - along * along);
   if (half_chord <= 0.0) return hit;
@@ -261,7 +254,7 @@ NispHit nispTrace(vec3 origin, vec3 direction) {
     at = nispMarch(origin, direction, at, leave, side);
     if (at < 0.0) return hit;
     hit.chart = nispChart(origin + at * direction);
-    if (hit.chart != nispOpening) break;
+    if (hit.chart != int(held.y)) break;
     at += NISP_LEAST_STEP;
     side = -side;
   }
@@ -287,3 +280,14 @@ void nispDescribe(inout NispHit hit, vec3 direction, vec4 uv_map) {
   hit.slope_v = along_first.y * first + along_second.y * second;
 }
 `;
+
+/** The same with the textures that it reads. */
+export const FIELD_GLSL = `
+precision highp float;
+precision highp int;
+precision highp sampler2D;
+precision highp sampler3D;
+
+uniform sampler2D nispData;
+uniform sampler3D nispOccupancy;
+${FIELD_FUNCTIONS_GLSL}`;

@@ -1,6 +1,6 @@
 /**
  * shader.js in WGSL, function by function, where it is explained. Textures are handed on, as a caller's
- * bindings have names of their own. The caller declares NISP_GROUPS, and sets nispSlope and nispOpening.
+ * bindings have names of their own. The caller declares NISP_GROUPS.
  */
 export const FIELD_WGSL = `
 const NISP_SDF = 0;
@@ -20,7 +20,6 @@ const NISP_STEPS = 400;
 const NISP_LAYERS_SEEN = 8;
 
 var<private> nispSlope: f32;
-var<private> nispOpening: i32;
 var<private> nispIn: array<vec4f, NISP_GROUPS>;
 var<private> nispOut: array<vec4f, NISP_GROUPS>;
 
@@ -249,6 +248,8 @@ struct NispHit {
 fn nispTrace(data: texture_2d<f32>, grid: texture_3d<f32>, origin: vec3f, direction: vec3f) -> NispHit {
   var hit: NispHit;
   hit.distance = -1.0;
+  let held = nispTexel(data, NISP_SDF + 3).zw;
+  nispSlope = held.x;
   let along = -dot(origin, direction);
   let square = NISP_BALL * NISP_BALL - (dot(origin, origin) - along * along);
   if (square <= 0.0) { return hit; }
@@ -260,7 +261,7 @@ fn nispTrace(data: texture_2d<f32>, grid: texture_3d<f32>, origin: vec3f, direct
     at = nispMarch(data, grid, origin, direction, at, leave, side);
     if (at < 0.0) { return hit; }
     hit.chart = nispChart(data, origin + at * direction);
-    if (hit.chart != nispOpening) { break; }
+    if (hit.chart != i32(held.y)) { break; }
     at += NISP_LEAST_STEP;
     side = -side;
   }

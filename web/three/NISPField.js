@@ -2,6 +2,7 @@ import { BackSide, GLSL3, ShaderMaterial, Vector3, Vector4 } from "three";
 import { NISPModel } from "../evaluate/model.js";
 import { FIELD_GLSL } from "../field/shader.js";
 import { FieldBox, FieldContent } from "./field_content.js";
+import { LOOK_GLSL, mapsGLSL } from "./field_look.js";
 import { TextureSet } from "./textures.js";
 
 const VERTEX = `
@@ -30,29 +31,13 @@ ${Array.from({ length: maps }, (_, i) => `uniform sampler2D nisp_map${i};`).join
 layout(location = 0) out vec4 pc_fragColor;
 #define gl_FragColor pc_fragColor
 
-vec4 nispTexture(int number, vec2 uv, float area) {
-  ${Array.from({ length: maps }, (_, i) => `if (number == ${i}) return textureLod(nisp_map${i}, uv, 0.5 * log2(max(area * float(textureSize(nisp_map${i}, 0).x * textureSize(nisp_map${i}, 0).y), 1e-12)));`).join("\n  ")}
-  return vec4(1.0);
-}
+${mapsGLSL(maps)}
+${LOOK_GLSL}
 
 void main() {
-  vec3 direction = normalize(nisp_place - nisp_eye);
-  float turning = length(dFdx(direction));
-  // Rays start in front of the ball, or far eyes cost digits.
-  float skipped = max(length(nisp_eye) - 2.0, 0.0);
-  vec3 start = nisp_eye + skipped * direction;
-  NispHit hit = nispTrace(start, direction);
-  if (hit.distance < 0.0) discard;
-  nispDescribe(hit, direction, uv_map);
-  vec4 clip = nisp_to_clip * vec4(hit.position, 1.0);
-  gl_FragDepth = 0.5 + 0.5 * clip.z / clip.w;
-  float width = turning * (skipped + hit.distance);
-  float slant = max(abs(dot(hit.normal, direction)), 0.1);
-  float area = length(cross(hit.slope_u, hit.slope_v)) * width * width / slant;
-  vec4 look = nispTexel(chart_table + hit.chart);
-  vec3 base = look.rgb * nispTexture(int(look.w), vec2(hit.uv.x, 1.0 - hit.uv.y), area).rgb;
-  vec3 normal = dot(hit.normal, direction) < 0.0 ? hit.normal : -hit.normal;
-  gl_FragColor = vec4(base * (0.25 + 0.75 * max(dot(normal, lamp), 0.0)), 1.0);
+  vec4 found = nispLook(nisp_place, nisp_eye, nisp_to_clip, uv_map, chart_table, lamp);
+  gl_FragDepth = found.w;
+  gl_FragColor = vec4(found.rgb, 1.0);
   #include <tonemapping_fragment>
   #include <colorspace_fragment>
 }`;
@@ -76,8 +61,6 @@ export class NISPFieldMaterial extends ShaderMaterial {
       uniforms: {
         nispData: { value: content.data },
         nispOccupancy: { value: content.grid },
-        nispSlope: { value: content.slope },
-        nispOpening: { value: content.opening },
         uv_map: { value: new Vector4(...content.uvMap) },
         chart_table: { value: content.chartTable },
         lamp: { value: new Vector3(-0.2, 0.7, 0.7).normalize() },

@@ -15,12 +15,10 @@ export class FieldContent {
     const { metadata } = model;
     if (!model.field) throw new Error("networks: expected some, found meshes alone: NISPLoader shows them");
     const { maps, charts } = chartLooks(metadata, textures);
-    const packed = packField(model.document, charts);
     const grid = occupancyOf(model.field.sdfNetwork);
+    const packed = packField(model.document, charts, grid.slope);
     this.groups = packed.groups;
     this.chartTable = packed.at;
-    this.slope = grid.slope;
-    this.opening = metadata.openings ? metadata.charts - 1 : -1;
     this.uvMap = metadata.uvMap;
     this.maps = maps;
     this.data = dataTexture(packed);

@@ -10,10 +10,11 @@ export class FieldDrawing {
   constructor(gl, model) {
     this.gl = gl;
     this.metadata = model.metadata;
-    const { chartMaterials, chartHasUv } = model.metadata;
-    const packed = packField(model.document, Array.from(chartMaterials, (material, i) => [material, chartHasUv[i] ? 1 : 0, 0, 0]));
-    this.groups = packed.groups;
     this.occupancy = occupancyOf(/** @type {import("../evaluate/field.js").FieldQueries} */ (model.field).sdfNetwork);
+    const { chartMaterials, chartHasUv } = model.metadata;
+    const charts = Array.from(chartMaterials, (material, i) => [material, chartHasUv[i] ? 1 : 0, 0, 0]);
+    const packed = packField(model.document, charts, this.occupancy.slope);
+    this.groups = packed.groups;
     this.chartTable = packed.at;
     this.data = this.dataTexture(packed.texels, packed.height);
     this.grid = this.gridTexture();
@@ -72,8 +73,6 @@ export class FieldDrawing {
     gl.bindTexture(gl.TEXTURE_3D, this.grid);
     gl.uniform1i(program.at("nispData"), 0);
     gl.uniform1i(program.at("nispOccupancy"), 1);
-    gl.uniform1f(program.at("nispSlope"), this.occupancy.slope);
-    gl.uniform1i(program.at("nispOpening"), this.metadata.openings ? this.metadata.charts - 1 : -1);
     gl.uniform1i(program.at("chart_table"), this.chartTable);
     gl.uniform4fv(program.at("uv_map"), this.metadata.uvMap);
     gl.drawArrays(gl.TRIANGLES, 0, 3);
