@@ -128,7 +128,7 @@ def test_both_renderers_draw_a_field_alike_among_meshes(address: str) -> None:
         for kind, pictures in seen.items():
             for view, picture in seen_by(pictures).items():
                 error = float(np.mean((webgl[view] - picture) ** 2))
-                assert psnr_of_error(error, peak=255) >= 40, (name, kind, view)
+                assert psnr_of_error(error, peak=255) >= 45, (name, kind, view)
         # Of the field the upper half is in front of the floor, the lower behind.
         whole = webgl["alone"].max(axis=-1) > 0
         in_front = np.abs(webgl["perspective"] - webgl["alone"]).max(axis=-1) <= 2

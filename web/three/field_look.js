@@ -8,15 +8,16 @@ vec4 nispTexture(int number, vec2 uv, float area) {
 /** Color (RGB) and depth of what is seen through a place of a field's box, in GLSL; goes with mapsGLSL and field/shader.js. */
 export const LOOK_GLSL = `
 vec4 nispLook(vec3 place, vec3 eye, mat4 to_clip, vec4 uv_map, int chart_table, vec3 lamp) {
-  vec3 direction = normalize(place - eye);
+  float far = length(place - eye);
+  vec3 direction = (place - eye) / far;
   float turning = length(dFdx(direction));
-  // Rays start in front of the ball, or far eyes cost digits.
-  float skipped = max(length(eye) - 2.0, 0.0);
-  NispHit hit = nispTrace(eye + skipped * direction, direction);
+  // Rays start at the box's diameter from its back, or far eyes cost digits.
+  float back = min(far, 3.6);
+  NispHit hit = nispTrace(place - back * direction, direction);
   if (hit.distance < 0.0) discard;
   nispDescribe(hit, direction, uv_map);
   vec4 clip = to_clip * vec4(hit.position, 1.0);
-  float width = turning * (skipped + hit.distance);
+  float width = turning * (far - back + hit.distance);
   float slant = max(abs(dot(hit.normal, direction)), 0.1);
   float area = length(cross(hit.slope_u, hit.slope_v)) * width * width / slant;
   vec4 chart = nispTexel(chart_table + hit.chart);
@@ -32,17 +33,18 @@ fn nispLook(
   data: texture_2d<f32>, grid: texture_3d<f32>,
   ${each(maps, (i) => `map${i}: texture_2d<f32>, sampler${i}: sampler,`)}
 ) -> vec4f {
-  let direction = normalize(place - eye);
+  let far = length(place - eye);
+  let direction = (place - eye) / far;
   let turning = length(dpdx(direction));
-  let skipped = max(length(eye) - 2.0, 0.0);
-  let traced = nispTrace(data, grid, eye + skipped * direction, direction);
+  let back = min(far, 3.6);
+  let traced = nispTrace(data, grid, place - back * direction, direction);
   if (traced.distance < 0.0) {
     discard;
     return vec4f();
   }
   let hit = nispDescribe(data, traced, direction, uv_map);
   let clip = to_clip * vec4f(hit.position, 1.0);
-  let width = turning * (skipped + hit.distance);
+  let width = turning * (far - back + hit.distance);
   let slant = max(abs(dot(hit.normal, direction)), 0.1);
   let area = length(cross(hit.slope_u, hit.slope_v)) * width * width / slant;
   let chart = nispTexel(data, chart_table + hit.chart);
