@@ -83,9 +83,10 @@ def inspect(data: bytes) -> list[SectionInfo]:
 def own_bytes(data: bytes) -> int:
     """Bytes of a file without its images, as they are stored in it.
 
-    Raises FormatError as `unpack` does.
+    Raises FormatError for a file whose header, table or checksums are wrong.
     """
-    return len(data) - sum(each.stored_length for each in inspect(data) if each.code == TXTR)
+    entries = read_container(data)
+    return len(data) - sum(each.stored_length for each in entries if each.code == TXTR)
 
 
 def _parse(data: bytes) -> tuple[Document, dict[str, Entry], dict[str, int]]:
