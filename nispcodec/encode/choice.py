@@ -17,6 +17,7 @@ from nispcodec.encode.split import Split
 from nispcodec.format import own_bytes, pack
 from nispcodec.simplify.errors import Errors
 from nispcodec.simplify.ladder import Candidate
+from nispcodec.train.config import TrainingBudget
 
 Loss = Callable[[Document], float]
 """What is lost by a document, by whatever counts: the less, the better."""
@@ -44,6 +45,7 @@ class Choice:
 
     With `geometry` "auto", a form that is estimated to be clearly larger is not made at all.
     `halves` makes two of an asset whose bodies are sorted; `split` are those that are to be made.
+    `trial` makes networks of a short fit.
     `loss`, where there is one, says which triangles are best, and which form, in the place of bytes
     and errors.
     """
@@ -54,11 +56,14 @@ class Choice:
         config: EncodeConfig,
         tuning: Tuning,
         halves: Callable[[Sorted], Split | None],
+        trial: Callable[[], Field],
         document: Made,
         loss: Loss | None = None,
     ) -> None:
         self._form, self._config, self._tuning = form, config, tuning
-        self._halves, self._document, self._loss = halves, document, loss
+        self._halves, self._trial, self._document, self._loss = halves, trial, document, loss
+        self._taken: Candidate | None = None
+        self._triangle_cost = -math.inf
         self.split: Split | None = None
         self._forms = tuning.forms
         self._estimate, self._field_bytes = 0.0, 0.0
@@ -85,7 +90,33 @@ class Choice:
         self.split = self._better_split(size, distance)
         if self.split:
             self._form.forget()
-        return self.split is None and self._estimate > few
+        if self.split or self._taken or self._estimate <= few:
+            return False
+        return not (self._doubtful and self._lost_by_trial())
+
+    @property
+    def _doubtful(self) -> bool:
+        """Whether a trial may spare the fit: triangles may be smaller than what was foreseen."""
+        near = self._estimate < self._forms.surely_larger * self._field_bytes
+        return near and self._tries
+
+    @property
+    def _tries(self) -> bool:
+        """Whether networks are tried before they are fitted."""
+        return self._budget.trial > 0 and self._loss is None
+
+    def _lost_by_trial(self) -> bool:
+        """Whether triangles cost so much less than networks of a short fit that they are taken."""
+        forms, tried = self._forms, self._document(self._trial(), ())
+        size, errors = own_bytes(pack(tried)), self._form.errors(tried)
+        self._triangle_cost = min(forms.cost(each.size, each.errors) for each in self._form.made)
+        if self._triangle_cost > forms.cost(size, errors) - forms.trial_gain:
+            return False
+        distance = forms.trial_left * errors.distance
+        most = max(size, self._field_bytes)
+        self._taken = self._form.nearer(self._form.about(distance), distance, most)
+        self._field_bytes = size
+        return True
 
     @property
     def settled(self) -> bool:
@@ -150,7 +181,26 @@ class Choice:
         cost = forms.foreseen_cost
         mixed = cost(networks + found.other_size, forms.fitted * error)
         pure = min(cost(size, distance), cost(triangles, found.distance))
-        return split if mixed < pure + math.log(forms.worth_mixing) else None
+        if mixed >= pure + math.log(forms.worth_mixing):
+            return None
+        return None if self._tries and self._split_lost_by_trial(split, found) else split
+
+    def _split_lost_by_trial(self, split: Split, found: Sorted) -> bool:
+        """Whether a short fit of one half shows both to be hardly better than triangles alone."""
+        forms, tried = self._forms, self._document(split.field.trial(), ())
+        networks, errors = own_bytes(pack(tried)), split.dense.errors(tried)
+        other = found.other_size / (found.dense_size + found.other_size)
+        made = self._form.made
+        triangles = min(forms.cost(each.size, each.errors) for each in made)
+        mixed = min(
+            forms.cost(networks + other * each.size, errors.beside(each.errors, 1 - split.share))
+            for each in made
+        )
+        if mixed - forms.trial_gain < triangles + math.log(forms.worth_mixing_tried):
+            return False
+        if self._estimate < self._field_bytes:
+            self._taken = self._form.about(forms.trial_left * errors.distance)
+        return True
 
     def after_fit(self, field: Document, errors: Errors) -> Chosen:
         """The fitted document, whose surface has these errors, or triangles that are better."""
@@ -163,7 +213,8 @@ class Choice:
             instead = self._instead(field, size, errors)
             if instead:
                 return instead
-        if self._estimate > self._forms.surely_larger * self._worth * size:
+        less = self._forms.cost(size, errors) < self._triangle_cost
+        if less or self._estimate > self._forms.surely_larger * self._worth * size:
             return Chosen(field, errors, self._estimate)
         found = self._rival(size, errors)
         if found is None:
@@ -250,7 +301,7 @@ class Choice:
         Raises FitError for a target error that they miss, TargetSizeError for a target size that is
         too small.
         """
-        found = self._of_least_loss(self._loss) if self._loss else self._wanted()
+        found = self._of_least_loss(self._loss) if self._loss else self._taken or self._wanted()
         return Chosen(self._document(None, found.parts), found.errors, self._field_bytes)
 
     def _rival(self, size: int, errors: Errors) -> Candidate | None:
@@ -296,14 +347,18 @@ class Choice:
     @property
     def _nearest(self) -> float:
         """The mean distance that triangles are to keep within, where bytes allow it."""
-        return self._tuning.training.budgets[self._config.preset].mesh
+        return self._budget.mesh
 
     @property
     def _worth(self) -> float:
         """Times the bytes of networks that triangles within that distance may take."""
         if self._config.target_error or self._config.target_size:
             return 1.0
-        return self._tuning.training.budgets[self._config.preset].worth
+        return self._budget.worth
+
+    @property
+    def _budget(self) -> TrainingBudget:
+        return self._tuning.training.budgets[self._config.preset]
 
     @property
     def _open(self) -> bool:

@@ -133,6 +133,8 @@ class FormConfig:
     growth           of the faces from one candidate to the next
     bytes_per_face   that candidates typically take: which are looked at first
     estimate_trials  candidates that an estimate looks at
+    far_nearer       times nearer than asked from which on a candidate says no more of how many
+                     faces that takes
     bytes_slope      of the bytes by the distance, both as logarithms, as typical
     least_bytes_per_face   no mesh was coded in fewer
     coarseness       of roundings of the unsimplified mesh, against a negligible distance
@@ -146,6 +148,11 @@ class FormConfig:
     measured_faces   of the surface of a field at most, when its errors are measured: what a decode
                      spends on thin walls, which a coarser grid tears
     fitted           share of the probe's error that an SDF of the preset `balanced` is left with
+    trial_left       share of the distance after a trial that the whole fit is left with, about
+    trial_gain       that the whole fit takes off the cost of a trial: of nine assets eight gained
+                     -0.05 to 0.2, and one that was lost either way 1.2
+    closer           shares of the distance at which triangles are looked for then too, in turn, as
+                     long as they take no more bytes than networks
     negligible       distances below this are as good as none ...
     negligible_uv    ... and UV errors below this
     distance_weight  of the logarithm of the distance against that of the bytes: halving it is worth
@@ -165,6 +172,8 @@ class FormConfig:
     least_networks   bytes that no networks of the preset `balanced` stayed below
     worth_mixing     share of the bytes of both pure forms that some bodies as networks and others
                      as triangles may take at most, foreseen
+    worth_mixing_tried   the same by what a trial of one half shows, and shares of candidates of the
+                     whole: coded by itself the other half takes about a quarter more than its share
     least_bits       of a coordinate, where a target size asks for grids that coarse
     size_trials      face counts tried for a target size at most
     size_aim         share of a target size that triangles are aimed at: within 3 % is enough
@@ -179,6 +188,7 @@ class FormConfig:
     growth: float = 1.8
     bytes_per_face: float = 2.0
     estimate_trials: int = 4
+    far_nearer: float = 4.0
     bytes_slope: float = 0.75
     least_bytes_per_face: float = 1.0
     coarseness: tuple[float, ...] = (4.0, 2.0, 1.0)
@@ -188,6 +198,9 @@ class FormConfig:
     surely_larger: float = 1.4
     measured_faces: float = 500_000
     fitted: float = 0.35
+    trial_left: float = 0.75
+    trial_gain: float = 0.2
+    closer: tuple[float, ...] = (0.67, 0.45)
     negligible: float = 1e-4
     negligible_uv: float = 5e-4
     distance_weight: float = 0.4
@@ -203,6 +216,7 @@ class FormConfig:
     notable_body: float = 0.03
     least_networks: float = 3000.0
     worth_mixing: float = 0.9
+    worth_mixing_tried: float = 0.72
     least_bits: int = 5
     size_trials: int = 7
     size_aim: float = 0.985

@@ -65,6 +65,10 @@ class FieldForm:
         """
         return self._context.foreseen
 
+    def trial(self) -> Field:
+        """The preset's networks after a few steps, to be looked at before they are fitted."""
+        return self._field(self._context.trial())
+
     def fit(
         self,
         document: Callable[[Field], Document],

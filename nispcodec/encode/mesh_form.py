@@ -97,7 +97,14 @@ class MeshForm:
     def _rungs(self) -> Rungs:
         config, slope = self._config, self._config.bytes_slope
         per_face = config.bytes_per_face
-        return Rungs(self.simplifier, config.growth, per_face, slope, config.estimate_trials)
+        return Rungs(
+            self.simplifier,
+            config.growth,
+            per_face,
+            slope,
+            config.far_nearer,
+            config.estimate_trials,
+        )
 
     def _begin(self, stage: str, steps: int = 0) -> None:
         """Tell of a stage, whose steps are the candidates made; 0: nobody knows how many."""
@@ -140,6 +147,11 @@ class MeshForm:
             positions = document.frame.to_normalized(mesh.positions)
             self._last = document, replace(mesh, positions=positions)
         return self._last[1]
+
+    @property
+    def made(self) -> tuple[Candidate, ...]:
+        """The candidates that an estimate has made."""
+        return self._rungs.made
 
     def sorted_bodies(self) -> Sorted:
         """By the largest candidate that an estimate has made."""
@@ -204,6 +216,19 @@ class MeshForm:
         self._begin("triangles")
         found = self._sound(self._rungs.about(distance))
         return self._refined(found, max(distance, found.errors.distance), math.inf)
+
+    def nearer(self, found: Candidate, distance: float, most_bytes: float) -> Candidate:
+        """A candidate that is about so near, or one of those nearer within the bytes.
+
+        Whichever costs the least.
+        """
+        good = [found]
+        for closer in self._config.closer:
+            other = self.about(closer * distance)
+            if other.size > most_bytes:
+                break
+            good.append(other)
+        return min(good, key=partial(_cost, config=self._config))
 
     def _refined(
         self,

@@ -75,7 +75,7 @@ def _encoded(
         info = unmeasured(config, held is not None)
         return Document(frame, materials, textures, held, parts, info)
 
-    choice = Choice(form, config, tuning, partial(split, field), document, loss)
+    choice = Choice(form, config, tuning, partial(split, field), field.trial, document, loss)
     if config.geometry == "mesh" or choice.settled:
         chosen = choice.triangles()
         info = measured(chosen, analysis, config)

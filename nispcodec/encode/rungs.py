@@ -21,6 +21,8 @@ class Rungs:
     growth          of the faces from one rung to the next
     bytes_per_face  that candidates typically take: where a search begins
     slope           of the bytes by the distance, both as logarithms, where two rungs do not say it
+    far_nearer      times nearer than asked from which on a rung says no more of where to look: all
+                    faces are exact
     tries           rungs that an estimate makes at most
     """
 
@@ -28,6 +30,7 @@ class Rungs:
     growth: float
     bytes_per_face: float
     slope: float
+    far_nearer: float
     tries: int
     _made: dict[int, Candidate] = field(default_factory=dict)
 
@@ -38,18 +41,31 @@ class Rungs:
         return self._made[faces]
 
     @property
+    def made(self) -> tuple[Candidate, ...]:
+        """All that were made."""
+        return tuple(self._made.values())
+
+    @property
     def largest(self) -> Candidate:
         """The candidate of the most faces of those that were made."""
         return self._made[max(self._made)]
 
     def about(self, distance: float) -> Candidate:
-        """The candidate of as many faces as should have a mean distance, by those made before."""
+        """The candidate of as many faces as should have a mean distance.
+
+        By those made before, and rungs that are made until there are some on either side.
+        """
         far, near = _sides(self._made, distance)
-        if far and near:
-            low, high = max(far), min(near)
-            share = _share(self._made[low], self._made[high], distance)
-            return self.at(round(low * (high / low) ** share))
-        return self.at(max(far) if far else min(near))
+        while not far or not near:
+            made = {self._nearest(faces): each for faces, each in self._made.items()}
+            rung = self._next(made, distance)
+            if rung in made:
+                return self._made[max(far) if far else min(near)]
+            self.at(self._faces[rung])
+            far, near = _sides(self._made, distance)
+        low, high = max(far), min(near)
+        share = self._share(self._made[low], self._made[high], distance)
+        return self.at(round(low * (high / low) ** share))
 
     def cheapest(self, cost: Callable[[Candidate], Cost], around: float) -> Candidate:
         """The candidate of least cost, found from that of about so many bytes on as it falls."""
@@ -109,7 +125,7 @@ class Rungs:
             beyond = last + (max(1, round(steps)) if far else min(-1, round(steps)))
             return min(max(beyond, 0), len(self._faces) - 1)
         low, high = max(far), min(near)
-        share = _share(made[low], made[high], distance)
+        share = self._share(made[low], made[high], distance)
         return min(max(low + 1, round(low + share * (high - low))), max(high - 1, low))
 
     def _law(self, made: dict[int, Candidate], distance: float) -> float:
@@ -118,6 +134,12 @@ class Rungs:
         if far and near:
             return _between(made[max(far)], made[min(near)], distance, self.slope)
         return _beyond(made[max(far) if far else min(near)], distance, self.slope)
+
+    def _share(self, far: Candidate, near: Candidate, distance: float) -> float:
+        """How much of the way from one candidate to the other lies before a distance."""
+        before = _logarithm(far, distance)
+        after = min(-_logarithm(near, distance), math.log(self.far_nearer))
+        return before / max(before + after, sys.float_info.epsilon)
 
     @cached_property
     def _faces(self) -> list[int]:
@@ -136,12 +158,6 @@ def _sides(made: dict[int, Candidate], distance: float) -> tuple[list[int], list
     """The rungs that are farther off than a distance, and those that are as near."""
     far = [each for each, found in made.items() if found.errors.distance > distance]
     return far, [each for each in made if each not in far]
-
-
-def _share(far: Candidate, near: Candidate, distance: float) -> float:
-    """How much of the way from one candidate to the other lies before a distance."""
-    before, after = _logarithm(far, distance), -_logarithm(near, distance)
-    return before / max(before + after, sys.float_info.epsilon)
 
 
 def _logarithm(found: Candidate, distance: float) -> float:

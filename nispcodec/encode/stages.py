@@ -19,6 +19,7 @@ class StageSeconds:
     first      of the stages that every encode begins with, in their order
     networks   of those before networks are fitted
     estimate   of looking at triangles before that
+    trial      of networks that are looked at before they are fitted
     triangles  of the candidates, where the asset is to be triangles
     surface    of measuring what networks decode to
     steps      steps of a preset's SDF in a second, the other networks beside it
@@ -34,6 +35,7 @@ class StageSeconds:
         default_factory=lambda: {"samples": 2.5, "probe how much there is to learn": 1.5}
     )
     estimate: float = 4.5
+    trial: float = 4.0
     triangles: float = 8.0
     surface: float = 2.5
     steps: float = 2000.0
@@ -49,14 +51,20 @@ class StageSeconds:
         last = {"surface": self.surface}
         if config.geometry == "mesh":
             return {**self.first, "triangles": self.triangles, **last}
-        looks = {"probe triangles": self.estimate} if config.geometry == "auto" else {}
         return {
             **self.first,
             **self.networks,
-            **looks,
+            **(self._looks(config, training) if config.geometry == "auto" else {}),
             "networks": self._fit(config, training),
             **last,
         }
+
+    def _looks(self, config: EncodeConfig, training: TrainConfig) -> dict[str, float]:
+        looks, budget = {"probe triangles": self.estimate}, training.budgets.get(config.preset)
+        aimed = config.target_size or config.target_total or config.target_error
+        if budget and budget.trial and not aimed:
+            looks["probe networks"] = self.trial
+        return looks
 
     def _fit(self, config: EncodeConfig, training: TrainConfig) -> float:
         seconds = self.paper
@@ -78,7 +86,8 @@ class _Whole:
     """Shares never fall: what is told too late or out of order changes nothing.
 
     Where triangles may be enough they are made first, and have half of the bar; networks that are
-    looked at after all share what is left of it.
+    looked at after all share what is left of it. The surface of networks that are only tried is no
+    step forward.
     """
 
     def __init__(
@@ -94,7 +103,7 @@ class _Whole:
         self._listen = listen
         self._spans = dict(zip(seconds, pairwise([0.0, *ends]), strict=True))
         self._fit, self._candidate = fit, candidate
-        self._undecided, self._fitted = undecided, False
+        self._undecided, self._tried, self._fitted = undecided, False, False
         self._overall = 0.0
 
     def __call__(self, update: Progress) -> None:
@@ -104,12 +113,15 @@ class _Whole:
     def _share(self, update: Progress) -> float:
         if self._undecided and (update.network or update.stage == "samples"):
             self._go_on_with_networks()
+        self._tried |= update.stage == "probe networks"
         if update.network:
             self._fitted = True
             return _within(self._spans["networks"], self._fit.share(update))
         if update.stage == "triangles" or (update.stage == "probe triangles" and self._fitted):
             return self._of_candidate(update)
         done = min(update.step / update.steps, 1.0) if update.steps else 0.0
+        if self._tried and not self._fitted and update.stage == "surface" and done < 1:
+            return self._overall
         return _within(self._spans.get(update.stage, (0.0, 0.0)), done)
 
     def _of_candidate(self, update: Progress) -> float:

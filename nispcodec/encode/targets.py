@@ -49,18 +49,24 @@ class FitContext:
     def probed(self) -> dict[str, float]:
         """The held-out errors of the probes, by name."""
         errors: dict[str, float] = {}
-        steps: dict[str, int] = {}
+        tell = _as_one(self.listen, "probe how much there is to learn")
 
         def heard(progress: Progress) -> None:
             # The least: what came of a late divergence is no measure, and NaN is none at all.
             known = errors.get(progress.network, math.inf)
             errors[progress.network] = min(known, progress.error)
-            steps[progress.network] = progress.step
-            stage, done = "probe how much there is to learn", min(steps.values())
-            self.listen(Progress(stage=stage, step=done, steps=progress.steps))
+            tell(progress)
 
         self.fit(probes(self.problem), heard)
         return errors
+
+    def trial(self) -> Networks:
+        """The preset's networks after the few steps of a trial, rounded once."""
+        short = replace(self.budget, steps=self.budget.trial, rounding=math.inf)
+        hidden = self.hidden_layers(self.probed, self.budget.scale)
+        tasks = replace(self, budget=short).tasks(hidden, self.probed, {})
+        once = [replace(task, foreseen=math.inf) for task in tasks]
+        return self.fit(once, _as_one(self.listen, "probe networks"))
 
     @property
     def foreseen(self) -> tuple[float, float]:
@@ -79,6 +85,19 @@ class FitContext:
         """The tasks for networks with these hidden layers."""
         tasks = sine_tasks(self.problem, hidden, self.budget, errors, bit_budgets)
         return pruned(tasks, self.prunings)
+
+
+def _as_one(listen: Listener, stage: str) -> Listener:
+    """A listener that tells of all networks as of one stage, as far as the slowest of them is."""
+    done: dict[str, float] = {}
+
+    def heard(progress: Progress) -> None:
+        if progress.steps:
+            done[progress.network] = progress.step / progress.steps
+            step = round(min(done.values()) * progress.steps)
+            listen(Progress(stage=stage, step=step, steps=progress.steps))
+
+    return heard
 
 
 def pruned(tasks: list[Task], prunings: Mapping[str, Pruning]) -> list[Task]:

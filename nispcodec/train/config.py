@@ -282,6 +282,8 @@ class TrainingBudget:
                  fit, which sees each one twenty times even so
     rounding     times the held-out error that rounding may cost before it is tried again, if that
                  is more than `QuantizeConfig` says
+    trial        steps of a fit by which networks are set against triangles before they are fitted
+                 for good, where the probe leaves that open; 0: none
     mesh         mean distance (normalized frame) that triangles in place of the networks may be
                  off: they are not made coarser, however small they would be
     worth        times the networks' bytes that triangles within `mesh` may take, where networks are
@@ -295,6 +297,7 @@ class TrainingBudget:
     w0_scale: float = 1.0
     samples: float = 1.0
     rounding: float = 1.0
+    trial: int = 0
     mesh: float = 6e-4
     worth: float = 1.0
 
@@ -366,7 +369,7 @@ class TrainConfig:
     budgets: Mapping[str, TrainingBudget] = field(
         default_factory=lambda: {
             "fast": TrainingBudget(9_000, 0.8, 3, 800, 0.7, samples=0.5, rounding=1.25, mesh=1e-3),
-            "balanced": TrainingBudget(40_000, 1.0, 9, 2000),
+            "balanced": TrainingBudget(40_000, 1.0, 9, 2000, trial=8000),
             "best": TrainingBudget(200_000, 1.2, 15, 4000, mesh=1e-4, worth=3.0),
         }
     )

@@ -31,17 +31,24 @@ FIELD = tiny.document(sdf=tiny.random_network(NetworkSpec((24, 24), 1)))
 SIZE = own_bytes(pack(FIELD))
 EXACT = Errors(0.0, 0.0, 0.0, 0.0)
 OFF = Errors(0.01, 0.02, 0.01, 0.005)
+FAR_OFF = replace(OFF, distance=10.0, color=1.0)
 
 
 class Told:
     """In place of a MeshForm: what it says, and what it was asked."""
 
+    made_errors = replace(EXACT, distance=3.5e-4)
+
     def __init__(self, estimate: float = 0.0, least_cost: float = 100.0, **found: Any) -> None:
         self.bytes, self.found, self.least_cost = estimate, found, least_cost
-        self.asked: list[tuple[str, float, float]] = []
+        self.asked: list[tuple[Any, ...]] = []
 
     def estimate(self, distance: float, few: float, many: float) -> float:
         return self.bytes
+
+    @property
+    def made(self) -> list[Any]:
+        return [SimpleNamespace(size=self.bytes, errors=self.made_errors)]
 
     def sorted_bodies(self) -> Sorted:
         """Half of the faces dense, and about nine tenths of the bytes."""
@@ -50,7 +57,7 @@ class Told:
 
     def __getattr__(self, name: str) -> Any:
         def answer(*limits: float) -> Any:
-            self.asked.append((name, *limits, *([0.0] * (2 - len(limits)))))  # type: ignore[arg-type]
+            self.asked.append((name, *limits, *([0.0] * (2 - len(limits)))))
             return self.found.get(name)
 
         return answer
@@ -62,7 +69,12 @@ def candidate(errors: Errors = EXACT) -> Any:
 
 def choice(form: Any, halves: Any = None, tuning: Tuning = TUNING, **options: Any) -> Choice:
     config = EncodeConfig(**options)
-    return Choice(form, config, tuning, lambda _: halves, as_mesh)
+    return Choice(form, config, tuning, lambda _: halves, tried, as_mesh)
+
+
+def tried() -> Field:
+    assert FIELD.field is not None
+    return FIELD.field
 
 
 def as_mesh(field: Field | None, parts: tuple[MeshPart, ...]) -> Document:
@@ -75,17 +87,59 @@ def as_mesh(field: Field | None, parts: tuple[MeshPart, ...]) -> Document:
 def test_networks_are_fitted_unless_triangles_are_surely_smaller(
     estimate: float, wanted: bool
 ) -> None:
-    assert choice(Told(estimate)).wants_field(1000.0, 1e-3) is wanted
+    form = Told(estimate, errors=EXACT)
+    form.made_errors = FAR_OFF
+    assert choice(form).wants_field(1000.0, 1e-3) is wanted
 
 
 def test_of_fine_detail_less_is_left_to_the_fit() -> None:
     fine = 1.1 * Tuning().training.sizing.fine
-    assert [choice(Told(each)).wants_field(1000.0, fine) for each in (790, 810)] == [False, True]
+    forms = [Told(each, errors=EXACT) for each in (790, 810)]
+    for form in forms:
+        form.made_errors = FAR_OFF
+    assert [choice(form).wants_field(1000.0, fine) for form in forms] == [False, True]
 
 
-def halves(networks: float) -> Any:
-    """Two of an asset, whose networks are foreseen to take so many bytes, at 3.5e-4."""
-    return SimpleNamespace(field=SimpleNamespace(foreseen=(networks, 1e-3)))
+@pytest.mark.parametrize(("estimate", "looks"), [(600.0, True), (1500.0, False)])
+def test_triangles_that_a_short_fit_loses_to_are_taken_without_a_whole_one(
+    estimate: float, looks: bool
+) -> None:
+    near = candidate(replace(OFF, distance=0.75 * OFF.distance))
+    form = Told(estimate, errors=OFF, about=near, nearer=near)
+    found = choice(form)
+    assert found.wants_field(1000.0, 1e-3) is not looks
+    if looks:
+        assert ("about", 0.75 * OFF.distance, 0.0) in form.asked
+        assert form.asked[-1] == ("nearer", near, 0.75 * OFF.distance, max(SIZE, 1000.0))
+        chosen = found.triangles()
+        assert (chosen.document.meshes, chosen.other_bytes) == ((PART,), SIZE)
+
+
+def test_networks_that_cost_less_than_all_triangles_that_were_made_are_set_against_no_more() -> (
+    None
+):
+    form = Told(600.0, errors=EXACT)
+    form.made_errors = FAR_OFF
+    found = choice(form)
+    assert found.wants_field(1000.0, 1e-3)
+    assert found.after_fit(FIELD, EXACT).document is FIELD
+    assert [name for name, *_ in form.asked] == ["errors"]
+
+
+def test_who_learns_shortly_makes_no_trial() -> None:
+    form = Told(600.0, errors=OFF, about=candidate())
+    assert choice(form, preset="fast").wants_field(1000.0, 1e-3)
+    assert form.asked == []
+
+
+def halves(networks: float, errors: Errors = EXACT) -> Any:
+    """Two of an asset, whose networks are foreseen to take so many bytes, at 3.5e-4.
+
+    After a trial their surface has these errors.
+    """
+    field = SimpleNamespace(foreseen=(networks, 1e-3), trial=tried)
+    dense = SimpleNamespace(errors=lambda document: errors)
+    return SimpleNamespace(field=field, dense=dense, share=0.5)
 
 
 @pytest.mark.parametrize(("networks", "taken"), [(4000.0, True), (9000.0, False)])
@@ -95,6 +149,16 @@ def test_an_asset_is_split_where_both_halves_together_are_small(
     found = choice(Told(10_000.0), halves(networks))
     assert found.wants_field(30_000.0, 1e-3) is False
     assert (found.split is not None) is taken
+
+
+def test_an_asset_is_not_split_where_a_short_fit_shows_no_gain() -> None:
+    near = candidate()
+    form = Told(10_000.0, about=near)
+    found = choice(form, halves(4000.0, FAR_OFF))
+    assert found.wants_field(30_000.0, 1e-3) is False
+    assert found.split is None
+    assert ("about", 0.75 * FAR_OFF.distance, 0.0) in form.asked
+    assert found.triangles().document.meshes == (PART,)
 
 
 def test_halves_that_cannot_be_small_are_not_made() -> None:
@@ -325,7 +389,7 @@ def test_where_nothing_has_a_finite_loss_triangles_have_the_target_size() -> Non
         def loss(document: Document, lost: float = lost) -> float:
             return lost
 
-        found = Choice(form, how, TUNING, lambda _: None, as_mesh, loss)
+        found = Choice(form, how, TUNING, lambda _: None, tried, as_mesh, loss)
         assert found.triangles().errors == errors
 
 
@@ -335,7 +399,7 @@ def test_what_loses_less_is_taken_whatever_its_size(of_mesh: float, taken: str) 
         return 2.0 if document.field else of_mesh
 
     form: Any = Told(1e9, of_least_loss=candidate(OFF))
-    found = Choice(form, EncodeConfig(), TUNING, lambda _: None, as_mesh, loss)
+    found = Choice(form, EncodeConfig(), TUNING, lambda _: None, tried, as_mesh, loss)
     chosen = found.after_fit(FIELD, EXACT)
     assert ("field" if chosen.document.field else "mesh") == taken
     assert found.triangles().errors == OFF
@@ -348,5 +412,5 @@ def test_networks_that_were_asked_for_stay_whatever_loses_less() -> None:
     def loss(document: Document) -> float:
         return 1.0 if document.field else 0.0
 
-    found = Choice(form, how, TUNING, lambda _: None, as_mesh, loss)
+    found = Choice(form, how, TUNING, lambda _: None, tried, as_mesh, loss)
     assert found.after_fit(FIELD, OFF).document.field

@@ -52,6 +52,16 @@ def test_what_is_about_as_near_has_coarser_positions_or_finer_uvs(ball: MeshForm
     assert found.uv_bits >= ruled.uv_bits
 
 
+def test_nearer_triangles_are_taken_as_far_as_they_cost_less_and_have_the_bytes() -> None:
+    dear = replace(CONFIG, distance_weight=10.0)
+    form = MeshForm(analyze(soup(sphere(12))), 0, dear, silent)
+    form.estimate(8e-3, 300.0, 1e9)
+    found = form.about(8e-3)
+    other = form.nearer(found, 8e-3, math.inf)
+    assert other.errors.distance < 0.7 * found.errors.distance
+    assert form.nearer(found, 8e-3, found.size) is found
+
+
 def test_few_large_faces_are_kept_as_they_are(box: MeshForm) -> None:
     best = box.best(1e-3, math.inf)
     assert best.faces == 12

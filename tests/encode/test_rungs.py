@@ -20,6 +20,7 @@ class PowerLaw:
 
     config: LadderConfig = field(default_factory=LadderConfig)
     least: int = 0
+    exact: int = EVERYTHING + 1
     asked: list[int] = field(default_factory=list)
     source: Any = field(default_factory=lambda: SimpleNamespace(triangles=range(EVERYTHING)))
 
@@ -28,9 +29,14 @@ class PowerLaw:
         made = SimpleNamespace(
             size=3 * faces,
             faces=faces,
-            errors=SimpleNamespace(distance=1 / faces if faces >= self.least else math.inf),
+            errors=SimpleNamespace(distance=self.distance(faces)),
         )
         return cast(Candidate, made)
+
+    def distance(self, faces: int) -> float:
+        if faces < self.least:
+            return math.inf
+        return 0.0 if faces >= self.exact else 1 / faces
 
 
 @pytest.fixture
@@ -40,7 +46,9 @@ def law() -> PowerLaw:
 
 @pytest.fixture
 def rungs(law: PowerLaw) -> Rungs:
-    return Rungs(cast(Simplifier, law), 1.8, bytes_per_face=2.0, slope=0.75, tries=4)
+    return Rungs(
+        cast(Simplifier, law), 1.8, bytes_per_face=2.0, slope=0.75, far_nearer=4.0, tries=4
+    )
 
 
 @pytest.mark.parametrize("faces", [200, 900, 5000, 15_000])
@@ -53,6 +61,27 @@ def test_between_two_rungs_the_bytes_are_those_of_the_power_law(rungs: Rungs, fa
 def test_as_many_faces_as_are_expected_to_be_that_near(rungs: Rungs, faces: int) -> None:
     rungs.bytes_at(1 / faces, 1000.0, 60_000.0)
     assert math.isclose(rungs.about(1 / faces).faces, faces, rel_tol=0.01)
+
+
+@pytest.mark.parametrize("faces", [200, 900, 5000, 15_000])
+@pytest.mark.parametrize("known", [150, 2000, EVERYTHING])
+def test_a_distance_that_is_not_between_those_known_is_found_too(
+    rungs: Rungs, known: int, faces: int
+) -> None:
+    rungs.at(known)
+    assert math.isclose(rungs.about(1 / faces).faces, faces, rel_tol=0.01)
+
+
+@pytest.mark.parametrize(("distance", "faces"), [(1e-9, EVERYTHING), (1.0, 150)])
+def test_beyond_the_ladder_there_is_its_end(rungs: Rungs, distance: float, faces: int) -> None:
+    rungs.at(2000)
+    assert rungs.about(distance).faces == faces
+
+
+def test_a_rung_that_is_exact_does_not_hide_those_before_it(law: PowerLaw, rungs: Rungs) -> None:
+    law.exact = 4000
+    rungs.at(2000)
+    assert 1 / 3200 < rungs.about(1 / 3000).errors.distance < 1 / 2600
 
 
 @pytest.mark.parametrize("around", [300.0, 6000.0, 60_000.0])
