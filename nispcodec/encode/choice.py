@@ -187,8 +187,10 @@ class Choice:
 
     def _split_lost_by_trial(self, split: Split, found: Sorted) -> bool:
         """Whether a short fit of one half shows both to be hardly better than triangles alone."""
+        self._form.forget()
         forms, tried = self._forms, self._document(split.field.trial(), ())
-        networks, errors = own_bytes(pack(tried)), split.dense.errors(tried)
+        networks = own_bytes(pack(tried))
+        errors = split.dense.errors(tried, forms.tried_faces)
         other = found.other_size / (found.dense_size + found.other_size)
         made = self._form.made
         triangles = min(forms.cost(each.size, each.errors) for each in made)

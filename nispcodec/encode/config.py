@@ -147,6 +147,8 @@ class FormConfig:
     surely_larger    share of them from which on networks are
     measured_faces   of the surface of a field at most, when its errors are measured: what a decode
                      spends on thin walls, which a coarser grid tears
+    tried_faces      the same of networks that are tried for a half: memory, as all of the asset is
+                     there as well
     fitted           share of the probe's error that an SDF of the preset `balanced` is left with
     trial_left       share of the distance after a trial that the whole fit is left with, about
     trial_gain       that the whole fit takes off the cost of a trial: of nine assets eight gained
@@ -197,6 +199,7 @@ class FormConfig:
     surely_best: float = 4.5
     surely_larger: float = 1.4
     measured_faces: float = 500_000
+    tried_faces: float = 100_000
     fitted: float = 0.35
     trial_left: float = 0.75
     trial_gain: float = 0.2

@@ -120,10 +120,13 @@ class MeshForm:
         self.simplifier.source.forget()
         self.simplifier.original.tree.forget()
 
-    def errors(self, document: Document) -> Errors:
-        """How far the surface that a document decodes to is off."""
+    def errors(self, document: Document, most_faces: float | None = None) -> Errors:
+        """How far the surface that a document decodes to is off.
+
+        As a decode has it, or of at most about so many faces.
+        """
         self._progress(Progress(stage="surface", step=0, steps=2))
-        decoded = self._decoded(document)
+        decoded = self._decoded(document, most_faces)
         self.forget()
         give_back()
         found = self.simplifier.original.errors(decoded)
@@ -140,10 +143,10 @@ class MeshForm:
         config = self._config.ladder.discolored
         return Discolored.of(self.simplifier.original, self._decoded(document), config).faulty
 
-    def _decoded(self, document: Document) -> TexturedMesh:
+    def _decoded(self, document: Document, most_faces: float | None = None) -> TexturedMesh:
         """The decoded mesh, positions in the normalized frame; the last one is kept."""
         if self._last is None or self._last[0] is not document:
-            mesh, _ = textured_mesh(document, self._resolution(document.field))
+            mesh, _ = textured_mesh(document, self._resolution(document.field, most_faces))
             positions = document.frame.to_normalized(mesh.positions)
             self._last = document, replace(mesh, positions=positions)
         return self._last[1]
@@ -158,12 +161,12 @@ class MeshForm:
         candidate, config = self._rungs.largest, self._config
         return sort_bodies(self._shown, self._analysis.frame, candidate, config)
 
-    def _resolution(self, field: Field | None) -> int | None:
+    def _resolution(self, field: Field | None, most_faces: float | None) -> int | None:
         """Cells a side as a decode has them, or fewer where that would take long to measure."""
         if field is None:
             return None
-        most_faces = self._config.measured_faces
-        return default_resolution(field.sdf, field.half_thickness, most_faces=most_faces)
+        most = most_faces or self._config.measured_faces
+        return default_resolution(field.sdf, field.half_thickness, most_faces=most)
 
     @property
     def least_cost(self) -> float:

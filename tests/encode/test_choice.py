@@ -138,7 +138,7 @@ def halves(networks: float, errors: Errors = EXACT) -> Any:
     After a trial their surface has these errors.
     """
     field = SimpleNamespace(foreseen=(networks, 1e-3), trial=tried)
-    dense = SimpleNamespace(errors=lambda document: errors)
+    dense = SimpleNamespace(errors=lambda document, most_faces: errors)
     return SimpleNamespace(field=field, dense=dense, share=0.5)
 
 
