@@ -183,7 +183,11 @@ class Choice:
         pure = min(cost(size, distance), cost(triangles, found.distance))
         if mixed >= pure + math.log(forms.worth_mixing):
             return None
-        return None if self._tries and self._split_lost_by_trial(split, found) else split
+        if not self._tries or not self._split_lost_by_trial(split, found):
+            return split
+        if self._estimate < size:
+            self._taken = self._form.about(distance)
+        return None
 
     def _split_lost_by_trial(self, split: Split, found: Sorted) -> bool:
         """Whether a short fit of one half shows both to be hardly better than triangles alone."""
@@ -198,11 +202,7 @@ class Choice:
             forms.cost(networks + other * each.size, errors.beside(each.errors, 1 - split.share))
             for each in made
         )
-        if mixed - forms.trial_gain < triangles + math.log(forms.worth_mixing_tried):
-            return False
-        if self._estimate < self._field_bytes:
-            self._taken = self._form.about(forms.trial_left * errors.distance)
-        return True
+        return mixed - forms.trial_gain >= triangles + math.log(forms.worth_mixing_tried)
 
     def after_fit(self, field: Document, errors: Errors) -> Chosen:
         """The fitted document, whose surface has these errors, or triangles that are better."""

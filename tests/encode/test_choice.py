@@ -157,7 +157,7 @@ def test_an_asset_is_not_split_where_a_short_fit_shows_no_gain() -> None:
     found = choice(form, halves(4000.0, FAR_OFF))
     assert found.wants_field(30_000.0, 1e-3) is False
     assert found.split is None
-    assert ("about", 0.75 * FAR_OFF.distance, 0.0) in form.asked
+    assert ("about", TUNING.forms.fitted * 1e-3, 0.0) in form.asked
     assert found.triangles().document.meshes == (PART,)
 
 
