@@ -2,20 +2,14 @@
  * The examples for three.js in headless Chromium: node examples.mjs CHROMIUM ADDRESS MODEL [EXAMPLE...],
  * where ADDRESS serves the folder web/ and MODEL is the file's path below it; all examples by default. Prints JSON of what is seen.
  */
-import { launched } from "./chromium.mjs";
+import { exampleOf, launched } from "./chromium.mjs";
 
 const [executable, address, model, ...wanted] = process.argv.slice(2);
 const browser = await launched(executable);
 const found = { said: [] };
 try {
   for (const name of wanted.length ? wanted : ["mesh", "field"]) {
-    const page = await browser.newPage({ viewport: { width: 64, height: 64 } });
-    page.on("pageerror", (error) => found.said.push(String(error)));
-    page.on("console", (message) => {
-      if (message.type() === "error" && !message.text().includes("404")) found.said.push(message.text());
-    });
-    await page.goto(`${address}/three/example_${name}.html?${model}`);
-    await page.waitForFunction("globalThis.shown", null, { timeout: 300000 });
+    const page = await exampleOf(browser, `${address}/three/example_${name}.html?${model}`, 64, found.said);
     found[name] = await page.evaluate(() => {
       const { scene, camera, renderer, object } = globalThis.shown;
       renderer.render(scene, camera);

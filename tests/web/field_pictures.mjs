@@ -5,7 +5,7 @@
  * `webgpu` (left out where Chromium has no adapter) and WebGPURenderer's `fallback`, pictures of two
  * cameras, with the floor through the field's middle, and one of the field alone.
  */
-import { WEBGPU, launched } from "./chromium.mjs";
+import { WEBGPU, exampleOf, launched } from "./chromium.mjs";
 
 const [executable, address, ...models] = process.argv.slice(2);
 const browser = await launched(executable, WEBGPU);
@@ -37,17 +37,7 @@ async function pictures(forceWebGL) {
   return { ...seen, alone };
 }
 
-/** The page of an example that shows a model. */
-async function shown(name, model) {
-  const page = await browser.newPage({ viewport: { width: 96, height: 96 } });
-  page.on("pageerror", (error) => found.said.push(String(error)));
-  page.on("console", (message) => {
-    if (message.type() === "error" && !message.text().includes("404")) found.said.push(message.text());
-  });
-  await page.goto(`${address}/three/example_${name}.html?${model}`);
-  await page.waitForFunction("globalThis.shown", null, { timeout: 300000 });
-  return page;
-}
+const shown = (name, model) => exampleOf(browser, `${address}/three/example_${name}.html?${model}`, 96, found.said);
 
 try {
   for (const model of models) {

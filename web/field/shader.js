@@ -1,21 +1,12 @@
+import { CONSTANTS_GLSL } from "./constants.js";
+
 /**
  * GLSL (ES 3.00) that evaluates a model's networks from the texels of data.js, and traces rays to
  * their surface. Weights are data: the text is the same for every file, but for NISP_GROUPS, the
  * groups of 4 in the widest layer. The caller declares two uniforms, as FIELD_GLSL does.
  */
 export const FIELD_FUNCTIONS_GLSL = `
-const int NISP_SDF = 0, NISP_CHART = 4, NISP_UV = 8;
-const float NISP_BALL = 1.01, NISP_CUBE = 1.02;
-// A ray that grazes the surface goes on by so much at least; it has met it when as near as that.
-const float NISP_LEAST_STEP = 5e-4, NISP_NEAR = 1e-4;
-// A crossing is not looked for more exactly: a Newton step follows.
-const float NISP_EXACT = NISP_NEAR;
-// How far from a point slopes are taken.
-const float NISP_OFFSET = 1e-3;
-// A ray so close, whose field falls by at least such a share of the steepest slope, goes on by so much
-// more than to where it would meet the surface; others by such a share of what is sure to miss nothing.
-const float NISP_CLOSE = 0.02, NISP_FAST = 0.2, NISP_BEYOND = 1.15, NISP_OVERLAP = 0.97;
-const int NISP_STEPS = 400, NISP_LAYERS_SEEN = 8;
+${CONSTANTS_GLSL}
 
 vec4 nispIn[NISP_GROUPS];
 vec4 nispOut[NISP_GROUPS];

@@ -1,23 +1,11 @@
+import { CONSTANTS_WGSL } from "./constants.js";
+
 /**
  * shader.js in WGSL, function by function, where it is explained. Textures are handed on, as a caller's
  * bindings have names of their own. The caller declares NISP_GROUPS.
  */
 export const FIELD_WGSL = `
-const NISP_SDF = 0;
-const NISP_CHART = 4;
-const NISP_UV = 8;
-const NISP_BALL = 1.01;
-const NISP_CUBE = 1.02;
-const NISP_LEAST_STEP = 5e-4;
-const NISP_NEAR = 1e-4;
-const NISP_EXACT = NISP_NEAR;
-const NISP_OFFSET = 1e-3;
-const NISP_CLOSE = 0.02;
-const NISP_FAST = 0.2;
-const NISP_BEYOND = 1.15;
-const NISP_OVERLAP = 0.97;
-const NISP_STEPS = 400;
-const NISP_LAYERS_SEEN = 8;
+${CONSTANTS_WGSL}
 
 var<private> nispSlope: f32;
 var<private> nispIn: array<vec4f, NISP_GROUPS>;
