@@ -14,6 +14,7 @@ from nispcodec.encode.bodies import Sorted
 from nispcodec.encode.config import EncodeConfig, Tuning
 from nispcodec.encode.mesh_form import MeshForm
 from nispcodec.encode.split import Split
+from nispcodec.encode.targets import TRIAL
 from nispcodec.format import own_bytes, pack
 from nispcodec.simplify.errors import Errors
 from nispcodec.simplify.ladder import Candidate
@@ -63,6 +64,7 @@ class Choice:
         self._form, self._config, self._tuning = form, config, tuning
         self._halves, self._trial, self._document, self._loss = halves, trial, document, loss
         self._taken: Candidate | None = None
+        # The least of triangles beside a trial; before one, nothing is known to cost more.
         self._triangle_cost = -math.inf
         self.split: Split | None = None
         self._forms = tuning.forms
@@ -108,7 +110,7 @@ class Choice:
     def _lost_by_trial(self) -> bool:
         """Whether triangles cost so much less than networks of a short fit that they are taken."""
         forms, tried = self._forms, self._document(self._trial(), ())
-        size, errors = own_bytes(pack(tried)), self._form.errors(tried)
+        size, errors = own_bytes(pack(tried)), self._form.errors(tried, stage=TRIAL)
         self._triangle_cost = min(forms.cost(each.size, each.errors) for each in self._form.made)
         if self._triangle_cost > forms.cost(size, errors) - forms.trial_gain:
             return False
@@ -194,7 +196,7 @@ class Choice:
         self._form.forget()
         forms, tried = self._forms, self._document(split.field.trial(), ())
         networks = own_bytes(pack(tried))
-        errors = split.dense.errors(tried, forms.tried_faces)
+        errors = split.dense.errors(tried, forms.tried_faces, TRIAL)
         other = found.other_size / (found.dense_size + found.other_size)
         made = self._form.made
         triangles = min(forms.cost(each.size, each.errors) for each in made)

@@ -153,8 +153,8 @@ class FormConfig:
     trial_left       share of the distance after a trial that the whole fit is left with, about
     trial_gain       that the whole fit takes off the cost of a trial: of nine assets eight gained
                      -0.05 to 0.2, and one that was lost either way 1.2
-    closer           shares of the distance at which triangles are looked for then too, in turn, as
-                     long as they take no more bytes than networks
+    closer           where triangles win a trial, shares of the foreseen distance at which they are
+                     looked for too, in turn, as long as they take no more bytes than networks
     negligible       distances below this are as good as none ...
     negligible_uv    ... and UV errors below this
     distance_weight  of the logarithm of the distance against that of the bytes: halving it is worth

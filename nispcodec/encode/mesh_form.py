@@ -120,17 +120,19 @@ class MeshForm:
         self.simplifier.source.forget()
         self.simplifier.original.tree.forget()
 
-    def errors(self, document: Document, most_faces: float | None = None) -> Errors:
-        """How far the surface that a document decodes to is off.
+    def errors(
+        self, document: Document, most_faces: float | None = None, stage: str = "surface"
+    ) -> Errors:
+        """How far the surface that a document decodes to is off, told as this stage.
 
         As a decode has it, or of at most about so many faces.
         """
-        self._progress(Progress(stage="surface", step=0, steps=2))
+        self._progress(Progress(stage=stage, step=0, steps=2))
         decoded = self._decoded(document, most_faces)
         self.forget()
         give_back()
         found = self.simplifier.original.errors(decoded)
-        self._progress(Progress(stage="surface", step=1, steps=2))
+        self._progress(Progress(stage=stage, step=1, steps=2))
         return found
 
     def part_errors(self, document: Document) -> tuple[tuple[float, float], ...]:

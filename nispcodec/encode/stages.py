@@ -9,6 +9,7 @@ from statistics import fmean
 
 from nispcodec.core.progress import Listener, Progress
 from nispcodec.encode.config import EncodeConfig
+from nispcodec.encode.targets import TRIAL
 from nispcodec.train.config import TrainConfig
 
 
@@ -63,7 +64,7 @@ class StageSeconds:
         looks, budget = {"probe triangles": self.estimate}, training.budgets.get(config.preset)
         aimed = config.target_size or config.target_total or config.target_error
         if budget and budget.trial and not aimed:
-            looks["probe networks"] = self.trial
+            looks[TRIAL] = self.trial
         return looks
 
     def _fit(self, config: EncodeConfig, training: TrainConfig) -> float:
@@ -103,7 +104,7 @@ class _Whole:
         self._listen = listen
         self._spans = dict(zip(seconds, pairwise([0.0, *ends]), strict=True))
         self._fit, self._candidate = fit, candidate
-        self._undecided, self._tried, self._fitted = undecided, False, False
+        self._undecided, self._fitted = undecided, False
         self._overall = 0.0
 
     def __call__(self, update: Progress) -> None:
@@ -113,15 +114,12 @@ class _Whole:
     def _share(self, update: Progress) -> float:
         if self._undecided and (update.network or update.stage == "samples"):
             self._go_on_with_networks()
-        self._tried |= update.stage == "probe networks"
         if update.network:
             self._fitted = True
             return _within(self._spans["networks"], self._fit.share(update))
         if update.stage == "triangles" or (update.stage == "probe triangles" and self._fitted):
             return self._of_candidate(update)
         done = min(update.step / update.steps, 1.0) if update.steps else 0.0
-        if self._tried and not self._fitted and update.stage == "surface" and done < 1:
-            return self._overall
         return _within(self._spans.get(update.stage, (0.0, 0.0)), done)
 
     def _of_candidate(self, update: Progress) -> float:

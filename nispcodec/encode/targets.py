@@ -34,6 +34,9 @@ from nispcodec.train.tasks import AssetProblem, probes, sine_tasks
 Networks = dict[str, Network]
 Fit = Callable[[list[Task], Listener], Networks]
 
+TRIAL = "probe networks"
+"""The stage of networks that are tried."""
+
 
 @dataclass(frozen=True)
 class FitContext:
@@ -66,7 +69,7 @@ class FitContext:
         hidden = self.hidden_layers(self.probed, self.budget.scale)
         tasks = replace(self, budget=short).tasks(hidden, self.probed, {})
         once = [replace(task, foreseen=math.inf) for task in tasks]
-        return self.fit(once, _as_one(self.listen, "probe networks"))
+        return self.fit(once, _as_one(self.listen, TRIAL))
 
     @property
     def foreseen(self) -> tuple[float, float]:

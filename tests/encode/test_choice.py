@@ -56,7 +56,7 @@ class Told:
         return Sorted(dense, ~dense, 0.9 * self.bytes, 0.1 * self.bytes, 3.5e-4)
 
     def __getattr__(self, name: str) -> Any:
-        def answer(*limits: float) -> Any:
+        def answer(*limits: float, stage: str = "surface") -> Any:
             self.asked.append((name, *limits, *([0.0] * (2 - len(limits)))))
             return self.found.get(name)
 
@@ -138,7 +138,7 @@ def halves(networks: float, errors: Errors = EXACT) -> Any:
     After a trial their surface has these errors.
     """
     field = SimpleNamespace(foreseen=(networks, 1e-3), trial=tried)
-    dense = SimpleNamespace(errors=lambda document, most_faces: errors)
+    dense = SimpleNamespace(errors=lambda document, most_faces, stage: errors)
     return SimpleNamespace(field=field, dense=dense, share=0.5)
 
 

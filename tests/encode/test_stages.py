@@ -10,6 +10,7 @@ import nispcodec
 from nispcodec import EncodeConfig, Progress
 from nispcodec.encode.config import GEOMETRIES
 from nispcodec.encode.stages import StageSeconds, with_overall
+from nispcodec.encode.targets import TRIAL
 from nispcodec.train.config import TrainConfig
 from tests.encode.test_recipe import box
 from tests.geometry.shapes import box_asset
@@ -65,10 +66,11 @@ def test_a_real_encode_as_triangles_goes_on_with_every_candidate() -> None:
 
 
 def test_a_trial_leaves_room_for_the_fit() -> None:
-    tried = [Progress(stage="samples"), Progress(stage="probe networks", step=2, steps=2)]
-    measured = [Progress(stage="surface", step=step, steps=2) for step in (0, 1)]
+    tried = [Progress(stage="samples"), Progress(stage=TRIAL, step=2, steps=2)]
+    measured = [Progress(stage=TRIAL, step=step, steps=2) for step in (0, 1)]
     made = [Progress(stage="probe triangles", step=step) for step in (1, 2)]
-    shares = overall([*tried, *measured, *made, fit("sdf", 0.5), *measured])
+    surface = Progress(stage="surface", step=0, steps=2)
+    shares = overall([*tried, *measured, *made, fit("sdf", 0.5), surface])
     assert shares == sorted(shares)
     assert shares[1] == shares[5] < 0.5 < shares[6] < shares[7]
 
