@@ -115,7 +115,7 @@ def encode(
     distance, FitError when a network does not converge or the device is not there, NispError for a
     target that cannot be met and for a package that is missing.
     """
-    require("scipy", "igl", extra="encode", what_for="encoding")
+    require("scipy", "igl", "embreex", extra="encode", what_for="encoding")
     from nispcodec.encode import recipe
 
     asset = _mesh(mesh)

@@ -21,7 +21,7 @@ RULES: dict[str, tuple[set[str], set[str]]] = {
         {"core"},
     ),
     # What is closest, and inside, is told by the kernel that answers for mesh parts.
-    "geometry": ({"numpy", "scipy", "igl"}, {"core", "infer"}),
+    "geometry": ({"numpy", "scipy", "igl", "embreex"}, {"core", "infer"}),
     "dataset": ({"numpy", "scipy"}, {"core", "geometry"}),
     "simplify": (
         {"numpy", "scipy", "igl", "meshoptimizer"},

@@ -88,7 +88,7 @@ class Batch:
 
     def expect_installed(self) -> None:
         """Raises NispError, before the work, where packages are missing that every asset needs."""
-        require("scipy", "igl", extra="encode", what_for="encoding")
+        require("scipy", "igl", "embreex", extra="encode", what_for="encoding")
         if self.config.thumbnail:
             require(
                 "scipy", "igl", "embreex", "skimage", extra="render", what_for="drawing thumbnails"

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import igl
 import numpy as np
+from embreex.mesh_construction import TriangleMesh
+from embreex.rtcore_scene import EmbreeScene
 
 from nispcodec.core.arrays import BoolArray, Float64Array
-from nispcodec.geometry.triangles import apart
 
 TINY = np.finfo(np.float64).tiny
 
@@ -19,12 +19,14 @@ def ways_beside(facing: Float64Array, random: np.random.Generator) -> Float64Arr
 
 
 def leaves(corners: Float64Array, points: Float64Array, ways: Float64Array) -> BoolArray:
-    """Which rays (n,) meet none of the faces (m, 3, 3)."""
-    if not len(points):
-        return np.zeros(0, dtype=bool)
-    tree = igl.AABB()
-    vertices, faces = apart(corners)
-    tree.init(vertices, faces)
-    hit = tree.intersect_ray_first(vertices, faces, points, ways)[0]
-    missed: BoolArray = np.asarray(hit).reshape(-1) < 0
+    """Which rays (n,) meet none of the faces (m, 3, 3); in single precision.
+
+    By Embree: libigl's rays go through triangles with sides below a thousandth.
+    """
+    if not len(points) or not len(corners):
+        return np.ones(len(points), dtype=bool)
+    scene = EmbreeScene()
+    TriangleMesh(scene, corners.astype(np.float32))
+    met = scene.run(points.astype(np.float32), ways.astype(np.float32), query="OCCLUDED")
+    missed: BoolArray = np.asarray(met) < 0
     return missed

@@ -17,6 +17,11 @@ def test_rays_leave_where_nothing_is_before_them() -> None:
     assert leaves(BOX, np.zeros((0, 3)), ways[:0]).shape == (0,)
 
 
+def test_small_triangles_are_in_the_way_too() -> None:
+    ways = np.random.default_rng(0).normal(size=(1000, 3))
+    assert not leaves(1e-4 * BOX, np.zeros((1000, 3)), ways).any()
+
+
 def test_ways_lie_about_the_way_that_is_faced() -> None:
     facing = np.tile([0.0, 0.0, 1.0], (4000, 1))
     ways = ways_beside(facing, np.random.default_rng(0))
