@@ -85,11 +85,18 @@ def image_size(texture: Texture) -> tuple[int, int]:
 
 
 def decode_image(texture: Texture) -> Float32Array:
-    """The texture's pixels: (h, w, 4) float32 in [0, 1], RGBA as stored, top row first.
+    """The texture's pixels: (h, w, 4) float32 in [0, 1], as `stored_pixels`."""
+    found: Any = stored_pixels(texture)
+    pixels: Float32Array = found / np.float32(255) if found.dtype == np.uint8 else found
+    return pixels
 
-    Gray, palette and 16-bit images are widened; an image without alpha gets alpha 1.
-    Raises MeshError, naming the texture, for bytes that are no image and for more pixels than
-    Pillow's limit of 89 million.
+
+def stored_pixels(texture: Texture) -> Float32Array | Uint8Array:
+    """The texture's pixels (h, w, 4), RGBA as stored, top row first.
+
+    They are uint8, and float32 in [0, 1] where the image is finer. Gray, palette and 16-bit images
+    are widened; an image without alpha is opaque. Raises MeshError, naming the texture, for bytes
+    that are no image and for more pixels than Pillow's limit of 89 million.
     """
     import PIL.Image
 
@@ -177,8 +184,10 @@ def encoded_texture(
 
 
 def image_bytes(texture: Texture) -> Uint8Array:
-    """The texture's pixels (h, w, 4) uint8. Raises MeshError as `decode_image` does."""
-    return np.rint(decode_image(texture) * 255).astype(np.uint8)
+    """The texture's pixels (h, w, 4) uint8. Raises MeshError as `stored_pixels` does."""
+    found: Any = stored_pixels(texture)
+    pixels: Uint8Array = found if found.dtype == np.uint8 else np.rint(found * 255).astype(np.uint8)
+    return pixels
 
 
 def encode_image(
@@ -273,10 +282,10 @@ def base_colors(
     that does not decode.
     """
 
-    def decoded(texture: int) -> Float32Array:
-        return decode_image(textures[texture])
+    def stored(texture: int) -> Float32Array | Uint8Array:
+        return stored_pixels(textures[texture])
 
-    return base_colors_of(materials, decoded, owners, has_uv, uv)
+    return base_colors_of(materials, stored, owners, has_uv, uv)
 
 
 def base_colors_of(
@@ -310,14 +319,14 @@ def linear_to_srgb(values: Float32Array) -> Float32Array:
     return np.where(values <= 0.0031308, values * 12.92, curved).astype(np.float32)
 
 
-def _to_rgba(image: PIL.Image.Image) -> Float32Array:
+def _to_rgba(image: PIL.Image.Image) -> Float32Array | Uint8Array:
     if image.mode.startswith("I"):  # Pillow clips 16-bit gray to 255 when converting
         values = np.asarray(image)[..., None]
         # The one value that is transparent, as for gray of 8 bits.
         alpha = (values != image.info.get("transparency", -1)).astype(np.float32)
         gray = values.astype(np.float32) / np.float32(65535)
         return np.concatenate([gray, gray, gray, alpha], axis=2)
-    return np.asarray(image.convert("RGBA"), dtype=np.float32) / np.float32(255)
+    return np.asarray(image.convert("RGBA"))
 
 
 def _encoded(linear: Float32Array) -> Float32Array:

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from nispcodec.core.arrays import Float32Array, Float64Array
+from nispcodec.core.arrays import Float32Array, Float64Array, Uint8Array
 from nispcodec.core.asset import Material, TexturedMesh
 from nispcodec.core.document import ChartTable
 from nispcodec.core.sample_set import SampleSet
-from nispcodec.core.texture import base_color, decode_image
+from nispcodec.core.texture import base_color, stored_pixels
 
 DIRECTIONS = np.array([(1, 0), (0, 1), (-1, 0), (0, -1)])
 
@@ -27,13 +27,13 @@ def texture_gradient(
     for number, material in enumerate(mesh.materials):
         used, owned = material.maps.get("base_color"), owners == number
         if used is not None and owned.any():
-            image = decode_image(mesh.textures[used.texture])
+            image = stored_pixels(mesh.textures[used.texture])
             found[owned] = _change(material, image, uvs[owned], step)
     return found
 
 
 def _change(
-    material: Material, image: Float32Array, uvs: Float64Array, step: float
+    material: Material, image: Float32Array | Uint8Array, uvs: Float64Array, step: float
 ) -> Float64Array:
     here = base_color(material, image, uvs)
     total = np.zeros(len(uvs), dtype=np.float32)
