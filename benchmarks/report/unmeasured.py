@@ -3,11 +3,9 @@
 from __future__ import annotations
 
 UNMEASURED: tuple[tuple[str, str], ...] = (
-    ("`best` in the former time of `balanced`: distance, UV against the former `best`", "<= 1.0"),
     ("assets held as fields and triangles both, 10 % smaller than either alone", ">= 2"),
     (
         "spot, chess_king, tea_set_01, food_apple_01 as fields: bytes at equal error, new / old",
         "<= 1",
     ),
-    ("rendered PSNR of the best preset, mean of eight, dB", ">= 42"),
 )
