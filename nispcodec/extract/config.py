@@ -180,7 +180,10 @@ class SliverConfig:
     aspect   square of the longest side over the area seen along the field's normal, 2.3 for the
              best of triangles: worse ones show in shading, better ones follow what is long
     turned   what is said of worse ones, and of faces that are turned over
+    told     length of the mean of the normals at a face's corners below which they tell no side, as
+             across thin walls: its own shape counts then
     give     share of a bad face's longest side that the surface may move by
+    stray    the same of borders between charts
     slides   shares of an edge that a vertex may slide along it
     worth    share of the squares of badness around a vertex that its move takes away, at least:
              many small steps take long and lead nowhere
@@ -189,7 +192,9 @@ class SliverConfig:
 
     aspect: float = 50.0
     turned: float = 1e4
+    told: float = 0.8
     give: float = 0.05
+    stray: float = 0.05
     slides: tuple[float, ...] = (0.1, 0.25, 0.5)
     worth: float = 0.002
     rounds: int = 32

@@ -34,14 +34,17 @@ class Shapes:
     def badness(self, faces: Int64Array) -> Float64Array:
         """Square of the longest side over the area seen along the normal, of each face (m, 3).
 
-        2.3 at best; `SliverConfig.turned` at most, and where that area is not above 0.
+        2.3 at best; `SliverConfig.turned` at most, and where that area is not above 0. The whole
+        area counts where normals tell less than `SliverConfig.told`.
         """
         a, b, c = (self.positions[faces[:, corner]] for corner in range(3))
         ab, bc, ca = b - a, c - b, a - c
         longest = np.maximum(np.maximum(_squares(ab), _squares(bc)), _squares(ca))
         normals = self.normals[faces[:, 0]] + self.normals[faces[:, 1]] + self.normals[faces[:, 2]]
-        lengths = np.maximum(np.sqrt(_squares(normals)), 1e-12)
-        seen = _dots(np.cross(ca, ab), normals) / (2 * lengths)
+        lengths, across = np.sqrt(_squares(normals)), np.cross(ca, ab)
+        along = _dots(across, normals) / (2 * np.maximum(lengths, 1e-12))
+        told = lengths >= 3 * self.config.told
+        seen = np.where(told, along, np.sqrt(_squares(across)) / 2)
         most = self.config.turned
         return np.where(seen * most > longest, longest / np.maximum(seen, 1e-300), most)
 
@@ -145,8 +148,9 @@ def _keeps_borders(
 ) -> BoolArray:
     """Whether the borders of charts stay where they are when half-edges' starts go to `target`.
 
-    A vertex within a chart is free; one on a border goes along it, if that is straight enough; one
-    where borders meet or the surface ends stays. owners, ring: the half-edges that leave each.
+    A vertex within a chart is free; one on a border goes along it, if that is straight enough, or
+    to another vertex as near as `SliverConfig.stray`; one where the surface ends stays. owners,
+    ring: the half-edges that leave each.
     """
     removed, count = wedges.starts[half_edges], len(half_edges)
     ends = np.bincount(owners, wedges.twins[ring] < 0, minlength=count) > 0
@@ -158,7 +162,10 @@ def _keeps_borders(
     beyond = np.where(along, sums.astype(np.int64) - wedges.ends[half_edges], target)
     start, end = shapes.positions[target], shapes.positions[beyond]
     strays = _distances(shapes.positions[removed], start, end) > give
-    return ~ends & ((meeting == 0) | (along & ~strays))
+    step = np.linalg.norm(start - shapes.positions[removed], axis=1)
+    near = step * shapes.config.give <= give * shapes.config.stray
+    beside = near & (target == wedges.ends[half_edges])
+    return ~ends & ((meeting == 0) | (along & ~strays) | beside)
 
 
 def _chosen(found: Collapses, better: Int64Array) -> Collapses:

@@ -5,12 +5,13 @@ normal: that bounds its aspect and its turn at once. Around each bad face edges 
 flipped, the best first, where all faces around get better together (after Botsch and Kobbelt,
 "A Robust Procedure to Eliminate Degenerate Faces from Triangle Meshes", 2001). Where neither helps,
 vertices slide a part of the way along an edge, which leaves the surface where it is just as well.
-A face that nothing helps is given up until something changes beside it.
+A face that nothing helps is given up until something changes beside it. What is left then may move
+borders between charts a little, and in thin walls, where normals tell no side, shape alone counts.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -36,9 +37,17 @@ def without_slivers(
 ) -> tuple[Surface, Int32Array]:
     """The surface with better faces, and their charts: `charts` (m,) are those of its faces.
 
-    Vertices stay, go, or slide along an edge. Borders between charts keep their course, the edge of
-    an open surface stays.
+    Vertices stay, go, or slide along an edge. Borders between charts keep their course but at the
+    last faces that nothing else helps, the edge of an open surface stays.
     """
+    for how in (replace(config, told=0.0, stray=0.0), config):
+        surface, charts = _mended(network, surface, charts, how)
+    return surface, charts
+
+
+def _mended(
+    network: Network, surface: Surface, charts: Int32Array, config: SliverConfig
+) -> tuple[Surface, Int32Array]:
     shapes = Shapes.of(surface.positions, gradient(network, surface.positions)[1], config)
     faces = surface.faces.astype(np.int64)
     patch = Patch(faces, charts, shapes.badness(faces) > config.aspect)

@@ -151,3 +151,43 @@ def test_what_cannot_be_mended_is_left_as_it_is() -> None:
     after, charts = without_slivers(UP, needle, np.zeros(1, np.int32))
     assert np.array_equal(after.faces, needle.faces)
     assert np.array_equal(charts, [0])
+
+
+def test_borders_move_a_little_for_the_last_needles() -> None:
+    # Two borders pass a hair from each other, across which there is an edge that is none.
+    points = [
+        (0.0, 0.0),
+        (0.01, 0.0),
+        (-0.3, 1.0),
+        (0.3, 1.0),
+        (-0.3, -1.0),
+        (0.3, -1.0),
+        (-1.0, 0.0),
+        (1.0, 0.0),
+    ]
+    middle, sides = [(0, 1, 3), (0, 3, 2), (1, 0, 4), (1, 4, 5)], [(0, 2, 6), (6, 4, 0)]
+    surface = flat(points, [*middle, *sides, (1, 7, 3), (1, 5, 7)])
+    charts = np.repeat([0, 1, 2], [4, 2, 2]).astype(np.int32)
+    kept, _ = without_slivers(UP, surface, charts, SliverConfig(stray=0, slides=()))
+    assert badness(UP, kept).max() > 100
+    after, left = without_slivers(UP, surface, charts, SliverConfig(slides=()))
+    assert badness(UP, after).max() < SliverConfig.aspect
+    for chart in range(3):
+        area = areas(after.positions, after.faces)[left == chart].sum()
+        assert area == pytest.approx(
+            areas(surface.positions, surface.faces)[charts == chart].sum(), rel=0.02
+        )
+
+
+def test_shape_counts_where_normals_tell_no_side() -> None:
+    # Two corners on either side of a wall, so that the better diagonal has both turned over.
+    sides = tiny.relu_network(
+        [(np.array([[0, 0, 1.0], [0, 0, -1]]), np.zeros(2)), (np.ones((1, 2)), -np.ones(1))]
+    )
+    cap = flat([(0, 0), (1, 0), (0.5, 0.001), (0.5, -1)], [(0, 1, 2), (1, 0, 3)])
+    cap.positions[:, 2] = [1e-4, 1e-4, -1e-4, -1e-4]
+    charts = np.zeros(2, np.int32)
+    kept, _ = without_slivers(sides, cap, charts, SliverConfig(told=0))
+    assert np.array_equal(kept.faces, cap.faces)
+    after, _ = without_slivers(sides, cap, charts)
+    assert all({2, 3} <= set(face) for face in after.faces.tolist())
