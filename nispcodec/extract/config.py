@@ -204,13 +204,22 @@ class SliverConfig:
 class LevelConfig:
     """Levels of detail.
 
-    share  of a level's triangles that the next one has: from twice as far, a surface covers a
-           quarter of the pixels
-    least  triangles of any level: fewer enclose nothing, and one is half a sheet
+    share      of a level's triangles that the next one has: from twice as far, a surface covers a
+               quarter of the pixels
+    least      triangles of any level: fewer enclose nothing, and one is half a sheet
+    uv_weight  error of one unit of UV against the asset's extent, for mesh parts: from afar shapes
+               count more than textures
+    error      largest one of mesh parts, as a share of the extent: where some bodies get no
+               coarser, the others would pay for them with all of their shape
+    reach      how far off the finest level a vertex of mesh parts may be, normalized frame: farther
+               ones are spikes
     """
 
     share: float = 0.25
     least: int = 4
+    uv_weight: float = 1.0
+    error: float = 0.05
+    reach: float = 0.05
 
 
 @dataclass(frozen=True)

@@ -193,7 +193,7 @@ def _part_levels(
 ) -> list[TexturedMesh]:
     """The mesh parts in levels, the first as they are."""
     counts = _counts(len(parts.faces), levels, config.levels)
-    return [parts, *(coarser(parts, document.frame, counts) if counts else ())]
+    return [parts, *(coarser(parts, document.frame, counts, config.levels) if counts else ())]
 
 
 def _counts(faces: int, levels: int, config: LevelConfig) -> list[int]:

@@ -63,6 +63,7 @@ def _simplified(
         faces,
         options,
         None if kept is None else kept.ravel()[at],
+        config.error,
     )
     # At seams faces are left with two corners in one place.
     found = at[found]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 
@@ -11,11 +12,13 @@ class CollapseConfig:
 
     uv_weight     error of one unit of UV against the asset's extent; between 1 and 10 distances
                   hardly change, and UVs are better at 10
+    error         largest one, as a share of the extent: what is bounded ends with more triangles
     notable_area  share of the area that small bodies may lose before none may be dropped
     card_faces    bodies of so few faces are kept as they are then: leaves, planks, bolts
     """
 
     uv_weight: float = 10.0
+    error: float = 1.0
     notable_area: float = 0.02
     card_faces: int = 12
 
@@ -53,6 +56,8 @@ class FitConfig:
     uv_damping   the same for UVs
     turn         cosine of the angle by which a face may turn in a round
     halvings     of a move that turns faces over, before all of it is taken back
+    reach        how far from the source a vertex may be, normalized frame: unbounded where means of
+                 distances are what counts, as single spikes make few triangles nearer on the mean
     """
 
     rounds: int = 8
@@ -70,6 +75,7 @@ class FitConfig:
     uv_damping: float = 0.001
     turn: float = 0.3
     halvings: int = 3
+    reach: float = math.inf
     solver: SolverConfig = SolverConfig()
 
 

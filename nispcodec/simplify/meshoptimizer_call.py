@@ -20,8 +20,11 @@ def fewer_triangles(
     count: int,
     options: int,
     kept: BoolArray | None = None,
+    error: float = 1.0,
 ) -> Int64Array:
     """About `count` triangles (k, 3), as few as can be had, of vertices that the given ones have.
+
+    There are more where fewer are off by more than `error`, a share of the extent.
 
     faces (m, 3) into positions (n, 3) and uvs (n, 2); an error of one unit of UV counts as
     `uv_weight` times the extent. kept: (n,), those that stay. Nothing may be left.
@@ -38,7 +41,7 @@ def fewer_triangles(
         uvs.astype(np.float32),
         np.full(2, uv_weight, dtype=np.float32),
         target_index_count=3 * count,
-        target_error=1.0,
+        target_error=error,
         vertex_lock=None if kept is None else kept.astype(np.uint8),
         options=options,
     )

@@ -7,6 +7,7 @@ borders, and seams sideways to its seams.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
@@ -28,16 +29,29 @@ def fitted_positions(
 ) -> Triangles:
     """The same faces with positions moved so that both surfaces are near each other.
 
-    No face turns over.
+    No face turns over, and no vertex is farther from the source than `FitConfig.reach`.
     """
     rng = np.random.default_rng([seed, 0])
     fit = _Fit.of(source, triangles, config, rng)
     positions = triangles.positions
     for _ in range(config.rounds):
         pulls = list(fit.pulls(positions, rng))
-        found = pulled(positions, pulls, config.damping, config.solver)
+        found = _within(
+            source, pulled(positions, pulls, config.damping, config.solver), config.reach
+        )
         positions = without_turns(triangles.faces, positions, found, config.turn, config.halvings)
     return replace(triangles, positions=positions)
+
+
+def _within(source: Source, positions: Float64Array, reach: float) -> Float64Array:
+    """The positions, drawn back to the source where they are farther from it."""
+    if math.isinf(reach):
+        return positions
+    nearest = source.tree.closest(positions).positions
+    off = positions - nearest
+    lengths = np.linalg.norm(off, axis=1, keepdims=True)
+    drawn: Float64Array = nearest + off * np.minimum(1, reach / np.maximum(lengths, reach))
+    return drawn
 
 
 @dataclass(frozen=True)
