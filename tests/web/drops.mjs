@@ -49,6 +49,22 @@ try {
   await page.focus("#channel");
   await page.keyboard.press("ArrowDown");
   found.camera = await page.evaluate("nispViewer.camera.elevation");
+  const turned = () => page.evaluate("[nispViewer.camera.azimuth, nispViewer.camera.lampAzimuth]");
+  const drag = async () => {
+    const { x, y, width, height } = await page.locator("#panes").boundingBox();
+    await page.mouse.move(x + width / 2, y + height / 2);
+    await page.mouse.down();
+    await page.mouse.move(x + width / 2 + 20, y + height / 2);
+    await page.mouse.up();
+  };
+  await page.setViewportSize({ width: 400, height: 400 });
+  found.turned = [await turned()];
+  await page.keyboard.down("Shift");
+  await drag();
+  await page.keyboard.up("Shift");
+  found.turned.push(await turned());
+  await drag();
+  found.turned.push(await turned());
   await page.evaluate(() => globalThis.nispViewer.pane.dispose());
   await page.waitForFunction("document.getElementById('message').textContent");
   found.lost = await page.textContent("#message");

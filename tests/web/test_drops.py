@@ -38,4 +38,8 @@ def test_the_last_sound_file_is_shown_and_nothing_is_left_of_others(tmp_path: Pa
     assert found["workers"] == 1
     # An arrow key in a list of choices chooses, and turns nothing.
     assert found["camera"] == Camera().elevation
+    # With Shift the lamp turns, without it the camera.
+    first, lit, seen = found["turned"]
+    assert lit[0] == first[0] != seen[0]
+    assert lit[1] == seen[1] != first[1]
     assert "reload the page" in found["lost"]

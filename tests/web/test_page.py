@@ -5,11 +5,13 @@ from __future__ import annotations
 import json
 import re
 from base64 import b64decode
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+import trimesh
 from nispcodec_web.page import original_data, viewer_page
 
 from nispcodec.core.arrays import Float64Array
@@ -22,6 +24,7 @@ from nispcodec.render.maps import Maps
 from nispcodec.render.picture import Eye
 from nispcodec.render.views import scene_of
 from tests import tiny
+from tests.infer.parts import part_of
 from tests.web.programs import HERE, chromium, npm_package, run_node
 
 SIZE = 96
@@ -142,3 +145,22 @@ def test_no_line_of_the_wireframe_is_behind_its_surface(tmp_path: Path) -> None:
     seen = np.abs(plain - 0.5).max(axis=2) > 0.1
     assert seen.any()
     assert lines[seen].mean() < 0.02 * plain[seen].mean()
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("kind", ["field", "triangles"])
+def test_a_slice_shows_what_is_inside(kind: str, tmp_path: Path) -> None:
+    field = tiny.document(tiny.sphere(width=64))
+    part = part_of(np.asarray(trimesh.creation.icosphere(3, 0.6).triangles))
+    document = field if kind == "field" else replace(field, field=None, meshes=(part,))
+    looks = {"azimuth": 0, "elevation": 0, "channel": "distance"}
+    asked = [request("middle", **looks), request("before", **looks, slice=0.9)]
+    shown(viewer_page(pack(document), kind), asked, tmp_path)
+    middle, before = picture(tmp_path, "middle"), picture(tmp_path, "before")
+    row = middle[SIZE // 2]
+    blue = np.flatnonzero(row[:, 2] > row[:, 0] + 0.02)
+    assert (np.diff(blue) == 1).all()
+    assert abs(len(blue) - {"field": 0.5, "triangles": 0.6}[kind] * SIZE) < 0.08 * SIZE
+    assert (row[[6, -6], 0] > row[[6, -6], 2] + 0.02).all()
+    disc = before[SIZE // 2, SIZE // 3 : -SIZE // 3]
+    assert (disc[:, 0] > disc[:, 2] + 0.02).all()

@@ -8,12 +8,14 @@ export class Camera {
     this.elevation = 20;
     this.fov = 32;
     this.zoom = 1;
+    this.lampAzimuth = -26.565;
+    this.lampElevation = 28.22;
   }
 
   /** Right, up and backward, as columns of a matrix (9). */
   axes() {
-    const [a, e] = [(this.azimuth * Math.PI) / 180, (this.elevation * Math.PI) / 180];
-    const backward = [Math.sin(a) * Math.cos(e), Math.sin(e), Math.cos(a) * Math.cos(e)];
+    const backward = towards(this.azimuth, this.elevation);
+    const a = (this.azimuth * Math.PI) / 180;
     const right = [Math.cos(a), 0, -Math.sin(a)];
     return [...right, ...cross(backward, right), ...backward];
   }
@@ -30,12 +32,11 @@ export class Camera {
     return [(half * width) / least, (half * height) / least];
   }
 
-  /** Where the lamp is: left, up and behind the camera. */
+  /** Where the lamp is, which goes with the camera: left, up and behind it to begin with. */
   lamp() {
     const axes = this.axes();
-    const [x, y, z] = [-0.5, 0.6, 1];
-    const length = Math.hypot(x, y, z);
-    return [0, 1, 2].map((i) => (x * axes[i] + y * axes[3 + i] + z * axes[6 + i]) / length);
+    const [x, y, z] = towards(this.lampAzimuth, this.lampElevation);
+    return [0, 1, 2].map((i) => x * axes[i] + y * axes[3 + i] + z * axes[6 + i]);
   }
 
   /**
@@ -63,6 +64,12 @@ export class Camera {
     }
     return matrix;
   }
+}
+
+/** A unit vector: z, turned around y and up. @param {number} azimuth @param {number} elevation degrees */
+function towards(azimuth, elevation) {
+  const [a, e] = [(azimuth * Math.PI) / 180, (elevation * Math.PI) / 180];
+  return [Math.sin(a) * Math.cos(e), Math.sin(e), Math.cos(a) * Math.cos(e)];
 }
 
 /** @param {number[]} a @param {number[]} b */

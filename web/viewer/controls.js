@@ -1,3 +1,5 @@
+import { Camera } from "./camera.js";
+
 /** Degrees for each pixel that a pointer moves, and for each press of an arrow. */
 const TURN = Object.freeze({ pixel: 0.4, press: 10 });
 const ZOOM = Object.freeze({ least: 0.5, most: 20, wheel: 0.0015, press: 1.2 });
@@ -24,9 +26,11 @@ export function orbit(element, camera, changed) {
     const spread = spreadOf(pointers);
     pointers.set(event.pointerId, { x: event.clientX, y: event.clientY });
     if (pointers.size === 2) zoom(camera, spreadOf(pointers) / spread);
+    else if (pointers.size > 2 || event.shiftKey || event.buttons === 2) shine(camera, event.clientX - before.x, before.y - event.clientY);
     else turn(camera, TURN.pixel * (before.x - event.clientX), TURN.pixel * (event.clientY - before.y));
     changed();
   });
+  element.addEventListener("contextmenu", (event) => event.preventDefault());
   element.addEventListener(
     "wheel",
     (event) => {
@@ -52,7 +56,7 @@ export function moveByKey(camera, key) {
     ArrowDown: () => turn(camera, 0, -TURN.press),
     "+": () => zoom(camera, ZOOM.press),
     "-": () => zoom(camera, 1 / ZOOM.press),
-    0: () => Object.assign(camera, { azimuth: 30, elevation: 20, zoom: 1 }),
+    0: () => Object.assign(camera, new Camera()),
   };
   moves[key]?.();
   return key in moves;
@@ -68,6 +72,12 @@ function spreadOf(pointers) {
 function turn(camera, across, up) {
   camera.azimuth = (camera.azimuth + across) % 360;
   camera.elevation = Math.min(Math.max(camera.elevation + up, -90), 90);
+}
+
+/** Moves the lamp. @param {import("./camera.js").Camera} camera @param {number} across @param {number} up pixels */
+function shine(camera, across, up) {
+  camera.lampAzimuth = (camera.lampAzimuth + TURN.pixel * across) % 360;
+  camera.lampElevation = Math.min(Math.max(camera.lampElevation + TURN.pixel * up, -90), 90);
 }
 
 /** @param {import("./camera.js").Camera} camera @param {number} factor */

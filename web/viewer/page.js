@@ -42,6 +42,7 @@ export class ViewerPage {
     element("field").addEventListener("change", () => this.choose());
     element("channel").addEventListener("change", () => this.choose());
     element("wireframe").addEventListener("change", () => this.choose());
+    element("slice").addEventListener("input", () => this.choose());
     element("resolution").addEventListener("change", () => this.guarded(() => this.remesh(null)));
     element("open").addEventListener("change", (event) => {
       const chosen = /** @type {HTMLInputElement} */ (event.target);
@@ -75,7 +76,8 @@ export class ViewerPage {
 
   /** Shows what the controls say. */
   choose() {
-    const look = { channel: input("channel").value, wireframe: input("wireframe").checked };
+    const look = { channel: input("channel").value, wireframe: input("wireframe").checked, slice: Number(input("slice").value) };
+    element("slice-label").hidden = look.channel !== "distance";
     this.pane.show({ ...look, field: input("field").checked });
     this.other?.show(look);
   }
@@ -107,6 +109,7 @@ export class ViewerPage {
     this.closeOriginal();
     this.model = new NISPModel(parsed);
     this.pane.renderer.setMaterials(parsed.metadata.materials, images);
+    this.pane.renderer.setSlice(this.model);
     const widths = [...parsed.metadata.specs.values()].flatMap((spec) => spec.hidden);
     const traceable = widths.length > 0 && Math.max(...widths) <= WIDEST_FIELD;
     input("field").disabled = !traceable;
@@ -167,12 +170,12 @@ export class ViewerPage {
 
   /**
    * A finished picture, for tests and scripts: RGBA, sRGB-encoded, straight alpha, top row first.
-   * @param {{size: number, azimuth: number, elevation: number, field: boolean, channel: string, wireframe?: boolean, original?: boolean}} wanted
+   * @param {{size: number, azimuth: number, elevation: number, field: boolean, channel: string, wireframe?: boolean, original?: boolean, slice?: number}} wanted
    */
-  picture({ size, azimuth, elevation, field, channel, wireframe = false, original = false }) {
+  picture({ size, azimuth, elevation, field, channel, wireframe = false, original = false, slice = 0 }) {
     const camera = Object.assign(new Camera(), { azimuth, elevation });
     const pane = original ? this.other : this.pane;
-    return /** @type {Pane} */ (pane).renderer.render(camera, { field, channel, wireframe }, size, 3);
+    return /** @type {Pane} */ (pane).renderer.render(camera, { field, channel, wireframe, slice }, size, 3);
   }
 }
 

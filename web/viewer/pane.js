@@ -14,7 +14,7 @@ export class Pane {
     this.camera = camera;
     this.renderer = new Renderer(canvas);
     /** @type {import("./renderer.js").Look} */
-    this.look = { field: false, channel: "color", wireframe: false };
+    this.look = { field: false, channel: "color", wireframe: false, slice: 0 };
     this.changedAt = -Infinity;
     this.pending = 0;
     this.moving = false;

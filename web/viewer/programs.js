@@ -91,9 +91,11 @@ in vec3 bent;
 in vec2 texture_place;
 flat in int label;
 uniform vec3 eye;
+uniform vec4 cut;
 out vec4 color;
 ${SHADE_GLSL}
 void main() {
+  if (dot(cut.xyz, where) > cut.w) discard;
   // Gradients of u and v in the plane of the triangle, from what changes to the pixels beside.
   vec3 right = dFdx(where), up = dFdy(where);
   vec2 right_uv = dFdx(texture_place), up_uv = dFdy(texture_place);
@@ -107,9 +109,52 @@ void main() {
 
 const LINES_FRAGMENT = `#version 300 es
 precision highp float;
+in vec3 where;
+uniform vec4 cut;
 out vec4 color;
 void main() {
+  if (dot(cut.xyz, where) > cut.w) discard;
   color = vec4(0.0, 0.0, 0.0, 1.0);
+}`;
+
+const SLICE_VERTEX = `#version 300 es
+uniform mat4 projection;
+uniform int axis;
+uniform float place;
+out vec2 at;
+void main() {
+  at = 2.0 * vec2(gl_VertexID & 1, gl_VertexID >> 1) - 1.0;
+  vec3 where;
+  where[axis] = place;
+  where[(axis + 1) % 3] = at.x;
+  where[(axis + 2) % 3] = at.y;
+  gl_Position = projection * vec4(where, 1.0);
+}`;
+
+/** Blue inside, orange outside, the surface black; a band for each twentieth of the radius. */
+const SLICE_FRAGMENT = `#version 300 es
+precision highp float;
+in vec2 at;
+uniform float place;
+uniform sampler2D distances;
+out vec4 color;
+float sample_of(ivec2 texel) {
+  return texelFetch(distances, clamp(texel, ivec2(0), textureSize(distances, 0) - 1), 0).x;
+}
+void main() {
+  vec2 between = (0.5 + 0.5 * at) * vec2(textureSize(distances, 0)) - 0.5;
+  ivec2 texel = ivec2(floor(between));
+  vec2 share = fract(between);
+  float below = mix(sample_of(texel), sample_of(texel + ivec2(1, 0)), share.x);
+  float above = mix(sample_of(texel + ivec2(0, 1)), sample_of(texel + 1), share.x);
+  float found = mix(below, above, share.y);
+  float line = fwidth(found);
+  // Beyond the unit ball networks know no distances.
+  if (dot(at, at) + place * place > 1.0) discard;
+  vec3 tone = found < 0.0 ? vec3(0.1, 0.3, 0.8) : vec3(0.9, 0.45, 0.1);
+  tone = mix(tone, vec3(1.0), 0.8 * exp(-4.0 * abs(found)));
+  if (fract(10.0 * abs(found)) > 0.5) tone *= 0.7;
+  color = vec4(abs(found) < line ? vec3(0.0) : tone, 1.0);
 }`;
 
 const ADD = `#version 300 es
@@ -204,6 +249,10 @@ export class Programs {
 
   lines() {
     return this.get("lines", () => [MESH_VERTEX, LINES_FRAGMENT]);
+  }
+
+  slice() {
+    return this.get("slice", () => [SLICE_VERTEX, SLICE_FRAGMENT]);
   }
 
   add() {

@@ -2,13 +2,14 @@ import { FieldDrawing } from "./field_drawing.js";
 import { MaterialSet } from "./materials.js";
 import { MeshDrawing } from "./mesh_drawing.js";
 import { Programs } from "./programs.js";
+import { planeBefore, SliceDrawing } from "./slice_drawing.js";
 import { Target } from "./targets.js";
 
-export const CHANNELS = ["color", "normal", "uv", "chart"];
+export const CHANNELS = ["color", "normal", "uv", "chart", "distance"];
 
 /**
  * What and how to draw.
- * @typedef {{field: boolean, channel: string, wireframe: boolean}} Look
+ * @typedef {{field: boolean, channel: string, wireframe: boolean, slice: number}} Look
  * @typedef {import("./camera.js").Camera} Camera
  */
 
@@ -32,14 +33,15 @@ export class Renderer {
     this.traced = 0;
     /** @type {FieldDrawing|null} */ this.field = null;
     /** @type {MeshDrawing|null} */ this.mesh = null;
+    /** @type {SliceDrawing|null} */ this.slice = null;
     /** @type {MaterialSet|null} */ this.materials = null;
   }
 
   /** @param {import("../decoder/metadata.js").Material[]} materials @param {(ImageBitmap|null)[]} images */
   setMaterials(materials, images) {
-    for (const old of [this.materials, this.field, this.mesh]) old?.dispose();
+    for (const old of [this.materials, this.field, this.mesh, this.slice]) old?.dispose();
     this.materials = new MaterialSet(this.gl, materials, images);
-    this.field = this.mesh = null;
+    this.field = this.mesh = this.slice = null;
   }
 
   /** Gives back all that the graphics processor holds. */
@@ -50,6 +52,11 @@ export class Renderer {
   /** @param {import("../evaluate/model.js").NISPModel} model */
   setField(model) {
     this.field = new FieldDrawing(this.gl, model);
+  }
+
+  /** @param {import("../evaluate/model.js").NISPModel} model */
+  setSlice(model) {
+    this.slice = new SliceDrawing(this.gl, model);
   }
 
   /** @param {import("../extract/mesh.js").MeshData} mesh */
@@ -74,7 +81,9 @@ export class Renderer {
   addSample(camera, look, width, height, offset, rows = height) {
     const { gl } = this;
     const jitter = [(2 * offset[0]) / width, (2 * offset[1]) / height];
-    if (look.field && this.field) {
+    const sliced = this.slice !== null && look.channel === "distance";
+    const traced = look.field && this.field !== null && !sliced;
+    if (traced) {
       this.traceField(camera, width, height, jitter, rows);
       if (this.traced < height) return false;
       this.traced = 0;
@@ -85,10 +94,10 @@ export class Renderer {
     gl.enable(gl.BLEND);
     gl.blendFunc(gl.ONE, gl.ONE_MINUS_SRC_ALPHA);
     gl.enable(gl.DEPTH_TEST);
-    const traced = look.field && this.field !== null;
     if (traced) this.shadeField(camera, look, width, height, jitter);
     // In the field's view, what the file holds as triangles stands beside it.
     if (this.mesh) this.drawMesh(camera, look, width, height, jitter, traced);
+    if (sliced) this.drawSlice(camera, look, width, height, jitter);
     gl.disable(gl.DEPTH_TEST);
     this.accumulate(width, height);
     return true;
@@ -161,12 +170,30 @@ export class Renderer {
     gl.uniformMatrix4fv(program.at("projection"), false, projection);
     gl.uniform3fv(program.at("eye"), camera.eye());
     this.light(program, camera, look);
+    this.cut(program, camera, look);
     mesh.draw(program, /** @type {MaterialSet} */ (this.materials), partsAlone);
     if (look.wireframe) {
       const nearer = projection.map((value, i) => (i % 4 === 2 ? value - LINES_NEARER * projection[i + 1] : value));
-      gl.uniformMatrix4fv(this.programs.lines().at("projection"), false, nearer);
+      const lines = this.programs.lines();
+      gl.uniformMatrix4fv(lines.at("projection"), false, nearer);
+      this.cut(lines, camera, look);
       mesh.drawSides(partsAlone);
     }
+  }
+
+  /** What lies before a slice is left out. @param {import("./programs.js").Program} program @param {Camera} camera @param {Look} look */
+  cut(program, camera, look) {
+    const { axis, place, side } = planeBefore(camera, look.slice);
+    const normal = [0, 1, 2].map((i) => (i === axis ? side : 0));
+    const cut = this.slice && look.channel === "distance" ? [...normal, side * place] : [0, 0, 0, 1];
+    this.gl.uniform4fv(program.at("cut"), cut);
+  }
+
+  /** @param {Camera} camera @param {Look} look @param {number} width @param {number} height @param {number[]} jitter */
+  drawSlice(camera, look, width, height, jitter) {
+    const program = this.programs.slice();
+    this.gl.uniformMatrix4fv(program.at("projection"), false, camera.projection(width, height, jitter));
+    /** @type {SliceDrawing} */ (this.slice).draw(program, planeBefore(camera, look.slice));
   }
 
   /** @param {number} width @param {number} height */
