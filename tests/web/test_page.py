@@ -20,6 +20,7 @@ from nispcodec.format import pack
 from nispcodec.metrics.psnr import psnr as psnr_of_error
 from nispcodec.model import NispModel
 from nispcodec.render.camera import Camera
+from nispcodec.render.channels import channel_picture
 from nispcodec.render.maps import Maps
 from nispcodec.render.picture import Eye
 from nispcodec.render.views import scene_of
@@ -123,6 +124,17 @@ def test_the_field_looks_as_nisp_render_draws_it(name: str, tmp_path: Path) -> N
     document = documents()[name]
     shown(viewer_page(pack(document), name), [request("field", field=True)], tmp_path)
     assert psnr(picture(tmp_path, "field"), rendered(document)) >= 35
+
+
+@pytest.mark.slow
+def test_charts_have_the_colors_of_nisp_render(tmp_path: Path) -> None:
+    document = tiny.document()
+    shown(viewer_page(pack(document), "tiny"), [request("charts", channel="chart")], tmp_path)
+    scene = scene_of(NispModel(document))
+    eye = Eye(scene, Maps(scene.textures), Camera(), SIZE)
+    # Most pixels are inside a chart, where samples need no mixing.
+    off = np.abs(picture(tmp_path, "charts") - over_gray(channel_picture(eye, "chart")))
+    assert (off.max(axis=2) < 0.01).mean() > 0.9
 
 
 @pytest.mark.slow

@@ -39,8 +39,8 @@ vec3 turned_by_map(vec3 normal, vec2 uv, float area, vec3 slope_u, vec3 slope_v)
 }
 
 vec3 chart_color(int chart) {
-  float turn = fract(0.61803398875 * float(chart));
-  return 0.35 + 0.6 * clamp(abs(fract(turn + vec3(0.0, 2.0, 1.0) / 3.0) * 6.0 - 3.0) - 1.0, 0.0, 1.0);
+  float turn = fract(0.618034 * float(chart));
+  return 0.55 + 0.4 * cos(6.2831853 * (turn + vec3(0.0, 1.0, 2.0) / 3.0));
 }
 
 // Premultiplied linear light. towards: from the eye; normal: outwards; area: of a sample in uv.
