@@ -51,8 +51,13 @@ class Discolored:
 
     @cached_property
     def corners(self) -> Float64Array:
-        """(k, 3): the corners of the original's faces at and beside these points."""
+        """(k, 3): the original's vertices beside these points, and the corners of faces there.
+
+        Walls that nobody sees have no points, and large faces no vertices: both hold what is shown.
+        """
         places, mesh = self.original.points.positions, self.original.surface.mesh
-        apart = cKDTree(places[self.points]).query(places)[0]
-        faces = np.unique(self.original.points.faces[apart <= self.config.beside])
-        return np.asarray(mesh.positions[np.unique(mesh.faces[faces])], np.float64)
+        tree, beside = cKDTree(places[self.points]), self.config.beside
+        faces = np.unique(self.original.points.faces[tree.query(places)[0] <= beside])
+        near = tree.query(mesh.positions, distance_upper_bound=beside)[0] <= beside
+        near[mesh.faces[faces]] = True
+        return np.asarray(mesh.positions[near], np.float64)

@@ -12,10 +12,10 @@ from nispcodec.core.asset import Material
 from nispcodec.metrics.paint import Paint
 from nispcodec.simplify.config import DiscoloredConfig
 from nispcodec.simplify.discolored import Discolored
-from nispcodec.simplify.errors import Original
+from nispcodec.simplify.errors import Counted, Original
 from nispcodec.simplify.ladder import Simplifier
 from nispcodec.simplify.source import Source
-from nispcodec.simplify.triangles import Triangles
+from nispcodec.simplify.triangles import Triangles, joined
 from tests.geometry import shapes
 from tests.simplify.meshes import SMALL, ball, coded, sheet, triangles_of
 
@@ -58,6 +58,21 @@ def test_a_spot_of_another_color_is_found_with_what_is_beside_it() -> None:
     assert found.share == pytest.approx(np.pi * 0.15**2 / 4, rel=0.35)
     assert np.abs(found.corners[:, :2] - [0.3, -0.2]).max() < 0.3
     assert len(found.corners) > spot.sum() / 2
+
+
+def test_vertices_of_walls_that_nobody_sees_count_as_beside() -> None:
+    given = sheet(30)
+    centers = given.corners.mean(axis=1)
+    spot = np.linalg.norm(centers[:, :2] - [0.3, -0.2], axis=1) < 0.15
+    wall = (centers[~spot] - [0.0, 0.0, 0.01])[:1]
+    hidden = triangles_of(shapes.soup(wall[:, None] + 0.001 * np.eye(3)))
+    both = painted(joined(given, hidden), np.append(spot, False))
+    held = Counted.of(np.arange(len(both)) < len(given))
+    known = Original.of(both, Source(both).tree, 8000, 0, held, PAINT)
+    points = np.linalg.norm(known.points.positions - wall[0], axis=1) < 0.05
+    found = Discolored(known, points, replace(CONFIG, beside=0.05))
+    apart = np.abs(found.corners[:, None] - hidden.corners[0]).max(axis=2)
+    assert (apart.min(axis=0) < 1e-12).all()
 
 
 def test_a_border_that_is_a_little_off_is_none() -> None:
