@@ -4,12 +4,12 @@
 
 NEW holds NAME.nisp for the assets NAME, OLD holds NAME.glb: what an older build decoded its own
 files to, as the format was another then. So meshes are compared, and queries only where they have
-no specks at all. Results are kept asset by asset.
+no specks at all. Results are kept asset by asset, those of the older build where OLD has no file.
 
 A point is a speck where its luminance is more than `OFF` from that of the original, which is
 smooth there, and from all that the original shows within `ALLOWED` of it. Smooth is where one chart
 of the original keeps its luminance within `EVEN` as far as `NEAR`: another color beyond a seam is
-no edge.
+no edge. What no ray reaches from outside is none: a layer just behind another one, say.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from benchmarks.measuring.model_records import measured, models_options
-from benchmarks.measuring.result_file import Record
+from benchmarks.measuring.result_file import Record, result_so_far
 from benchmarks.measuring.target import Asked, Target, asked_of_each
 from nispcodec.core.arrays import BoolArray, Float32Array, Float64Array, Int64Array
 from nispcodec.core.asset import TexturedMesh
@@ -32,6 +32,7 @@ from nispcodec.core.connectivity import connected_faces, row_ids
 from nispcodec.core.document import Frame
 from nispcodec.core.texture import srgb_to_linear
 from nispcodec.format import unpack
+from nispcodec.geometry.rays import leaves, ways_beside
 from nispcodec.io.load import load_mesh
 from nispcodec.metrics.color import color_at
 from nispcodec.metrics.sides import sides_of
@@ -47,6 +48,9 @@ ALLOWED = 2e-3
 # Points of the original by which its colors about any are known, and how many of them are asked.
 KNOWN = 400_000
 NEIGHBORS = 24
+# Rays that ask whether a point is seen, and how far in front of it they begin.
+SIGHTS = 128
+AHEAD = 1e-5
 WAYS = np.array(np.meshgrid(*[[-1, 0, 1]] * 3)).reshape(3, -1).T / np.sqrt(3)
 SAMPLES = 400_000
 LOOKS = ("mesh", "queries")
@@ -128,6 +132,7 @@ def of_mesh(original: Original, decoded: Surface, samples: int) -> dict[str, flo
     smooth = original.smooth(closest) & sides_of(original.surface, closest).outer
     drawn, closest = drawn[smooth], closest[smooth]
     found = original.specks(drawn.positions, closest, luminance(color_at(decoded, drawn)))
+    found[found] = in_sight(decoded, drawn[found])
     return {"mesh": float(found.mean()), "smooth": float(smooth.mean())}
 
 
@@ -143,11 +148,21 @@ def seen(surface: Surface, points: SurfacePoints) -> SurfacePoints:
     return points[sides_of(surface, points).outer]
 
 
+def in_sight(surface: Surface, points: SurfacePoints) -> BoolArray:
+    """(n,): whether one sees points on a surface from outside: one of some rays gets away."""
+    facing = surface.normals_at(points.faces).repeat(SIGHTS, axis=0)
+    facing[::2] *= -1
+    start = points.positions.repeat(SIGHTS, axis=0) + AHEAD * facing
+    free = leaves(surface.corners, start, ways_beside(facing, np.random.default_rng([0, 3])))
+    return np.asarray(free.reshape(-1, SIGHTS).any(axis=1))
+
+
 def specks(original: Original, model: NispModel, samples: int = SAMPLES) -> dict[str, float]:
     """Shares of specks: `mesh`, of the extracted mesh; `queries`, of answers on the original."""
     points = seen_points(original, samples)
     answers = luminance(model.color(points.positions, frame="normalized"))
     found = original.specks(points.positions, points, answers)
+    found[found] = in_sight(original.surface, points[found])
     decoded = Surface.of(model.to_mesh(), original.frame)
     return {**of_mesh(original, decoded, samples), "queries": float(found.mean())}
 
@@ -166,18 +181,22 @@ def asked(results: Record) -> Iterator[Asked]:
 @models_options(RESULTS)
 def main(old: Path | None, models: Path, assets: Path, only: tuple[str, ...], output: Path) -> None:
     """Measure what is not measured yet, and print asked against measured."""
-    records = measured(models, assets, only, output, partial(record, old))
+    known = result_so_far(output).get("assets", {})
+    records = measured(models, assets, only, output, partial(record, old, known))
     for each in asked({"assets": records}):
         click.echo(each.line())
 
 
-def record(old: Path | None, model: Path, original: Path) -> Record:
-    """The shares of one file, those of the one of the same name in `old`, and new by old."""
+def record(old: Path | None, known: Record, model: Path, original: Path) -> Record:
+    """The shares of one file, those of the one of the same name in `old`, and new by old.
+
+    Where `old` has none: those of it that are known.
+    """
     asset = Original.of(load_mesh(original))
-    found, before = shares(asset, model), {}
-    if old:
-        decoded = load_mesh(old / model.with_suffix(".glb").name)
-        before = of_mesh(asset, Surface.of(decoded, asset.frame), SAMPLES)
+    found, before = shares(asset, model), known.get(model.stem, {}).get("old", {})
+    decoded = old / model.with_suffix(".glb").name if old else None
+    if decoded and decoded.exists():
+        before = of_mesh(asset, Surface.of(load_mesh(decoded), asset.frame), SAMPLES)
     return {**found, "old": before, "ratios": ratios(found, before)}
 
 

@@ -7,7 +7,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from benchmarks.studies.specks import Original, asked, of_mesh, ratios, seen_points
+from benchmarks.studies.specks import (
+    Original,
+    asked,
+    in_sight,
+    of_mesh,
+    ratios,
+    seen_points,
+)
 from nispcodec.core.asset import Texture, TexturedMesh
 from nispcodec.core.texture import encode_image
 from nispcodec.metrics.surface import Surface
@@ -82,6 +89,25 @@ def test_hidden_places_are_not_asked() -> None:
     seen = seen_points(Original.of(both, KNOWN), 2_000).positions
     assert len(seen) > 500
     assert np.linalg.norm(seen, axis=1).min() > 0.9
+
+
+def test_a_layer_close_behind_others_is_not_in_sight() -> None:
+    one = plane(cells=2)
+    count = len(one.positions)
+    layers = replace(
+        one,
+        positions=np.vstack([one.positions + np.array([0, 0, z]) for z in (0, 1e-4, 2e-4)]),
+        faces=np.vstack([one.faces + i * count for i in range(3)]).astype(np.int32),
+        uvs=np.vstack([one.uvs] * 3),
+        uv_faces=np.vstack([one.uv_faces + i * len(one.uvs) for i in range(3)]).astype(np.int32),
+        face_materials=np.tile(one.face_materials, 3),
+    )
+    surface = Surface.of(layers, Original.of(one, 100).frame)
+    points = surface.sample(600, np.random.default_rng(0))
+    layer = points.faces // len(one.faces)
+    found = in_sight(surface, points)
+    assert found[layer != 1].all()
+    assert found[layer == 1].mean() < 0.1
 
 
 def test_half_of_the_old_specks_are_asked_for() -> None:
