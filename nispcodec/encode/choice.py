@@ -193,18 +193,18 @@ class Choice:
 
     def _split_lost_by_trial(self, split: Split, found: Sorted) -> bool:
         """Whether a short fit of one half shows both to be hardly better than triangles alone."""
+        triangles = self._form.cheapest()
         self._form.forget()
         forms, tried = self._forms, self._document(split.field.trial(), ())
         networks = own_bytes(pack(tried))
         errors = split.dense.errors(tried, forms.tried_faces, TRIAL)
         other = found.other_size / (found.dense_size + found.other_size)
-        made = self._form.made
-        triangles = min(forms.cost(each.size, each.errors) for each in made)
         mixed = min(
             forms.cost(networks + other * each.size, errors.beside(each.errors, 1 - split.share))
-            for each in made
+            for each in self._form.made
         )
-        return mixed - forms.trial_gain >= triangles + math.log(forms.worth_mixing_tried)
+        pure = forms.cost(triangles.size, triangles.errors)
+        return mixed - forms.trial_gain >= pure + math.log(forms.worth_mixing_tried)
 
     def after_fit(self, field: Document, errors: Errors) -> Chosen:
         """The fitted document, whose surface has these errors, or triangles that are better."""

@@ -175,7 +175,8 @@ class FormConfig:
     worth_mixing     share of the bytes of both pure forms that some bodies as networks and others
                      as triangles may take at most, foreseen
     worth_mixing_tried   the same by what a trial of one half shows, and shares of candidates of the
-                     whole: coded by itself the other half takes about a quarter more than its share
+                     whole: coded by itself the other half takes about a quarter more than its
+                     share, and a tie is not worth twice the time
     least_bits       of a coordinate, where a target size asks for grids that coarse
     size_trials      face counts tried for a target size at most
     size_aim         share of a target size that triangles are aimed at: within 3 % is enough
@@ -219,7 +220,7 @@ class FormConfig:
     notable_body: float = 0.03
     least_networks: float = 3000.0
     worth_mixing: float = 0.9
-    worth_mixing_tried: float = 0.72
+    worth_mixing_tried: float = 0.68
     least_bits: int = 5
     size_trials: int = 7
     size_aim: float = 0.985

@@ -158,6 +158,14 @@ class MeshForm:
         """The candidates that an estimate has made."""
         return self._rungs.made
 
+    def cheapest(self) -> Candidate:
+        """The candidate of least cost: from those made on, as long as it falls."""
+
+        def cost(candidate: Candidate) -> Cost:
+            return 0.0, self._config.cost(candidate.size, candidate.errors)
+
+        return self._rungs.cheapest(cost, min(self.made, key=cost).asked)
+
     def sorted_bodies(self) -> Sorted:
         """By the largest candidate that an estimate has made."""
         candidate, config = self._rungs.largest, self._config
@@ -211,7 +219,8 @@ class MeshForm:
             far = max(errors.made_up.share, errors.lost.share)
             return 0.0 if config.is_sound(errors) else far, _cost(candidate, config, rest)
 
-        return self._refined(self._rungs.cheapest(cost, rest.size), math.inf, math.inf, rest)
+        found = self._rungs.cheapest(cost, rest.size / config.bytes_per_face)
+        return self._refined(found, math.inf, math.inf, rest)
 
     def about(self, distance: float) -> Candidate:
         """A candidate whose mean distance is about this.

@@ -67,9 +67,9 @@ class Rungs:
         share = self._share(self._made[low], self._made[high], distance)
         return self.at(round(low * (high / low) ** share))
 
-    def cheapest(self, cost: Callable[[Candidate], Cost], around: float) -> Candidate:
-        """The candidate of least cost, found from that of about so many bytes on as it falls."""
-        rung = self._nearest(around / self.bytes_per_face)
+    def cheapest(self, cost: Callable[[Candidate], Cost], faces: float) -> Candidate:
+        """The candidate of least cost, found from that of about so many faces on as it falls."""
+        rung = self._nearest(faces)
         best = self.at(self._faces[rung])
         for step in (-1, 1):
             while 0 <= rung + step < len(self._faces):

@@ -56,8 +56,10 @@ class FitConfig:
     uv_damping   the same for UVs
     turn         cosine of the angle by which a face may turn in a round
     halvings     of a move that turns faces over, before all of it is taken back
-    reach        how far from the source a vertex may be, normalized frame: unbounded where means of
-                 distances are what counts, as single spikes make few triangles nearer on the mean
+    far          times the mean distance before the fit that a vertex may be from the source: where
+                 nearly no point speaks for one, least squares may send it anywhere
+    reach        how far it may be at most, normalized frame: unbounded where means of distances are
+                 what counts, as single spikes make few triangles nearer on the mean
     """
 
     rounds: int = 8
@@ -75,6 +77,7 @@ class FitConfig:
     uv_damping: float = 0.001
     turn: float = 0.3
     halvings: int = 3
+    far: float = 10.0
     reach: float = math.inf
     solver: SolverConfig = SolverConfig()
 

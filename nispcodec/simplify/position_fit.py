@@ -7,7 +7,6 @@ borders, and seams sideways to its seams.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
@@ -29,28 +28,26 @@ def fitted_positions(
 ) -> Triangles:
     """The same faces with positions moved so that both surfaces are near each other.
 
-    No face turns over, and no vertex is farther from the source than `FitConfig.reach`.
+    No face turns over, and no vertex is farther from the source than `FitConfig` allows.
     """
     rng = np.random.default_rng([seed, 0])
     fit = _Fit.of(source, triangles, config, rng)
     positions = triangles.positions
+    reach = min(config.reach, config.far * fit.missed(positions))
     for _ in range(config.rounds):
         pulls = list(fit.pulls(positions, rng))
-        found = _within(
-            source, pulled(positions, pulls, config.damping, config.solver), config.reach
-        )
+        moved = pulled(positions, pulls, config.damping, config.solver)
+        found = _within(source, moved, reach)
         positions = without_turns(triangles.faces, positions, found, config.turn, config.halvings)
     return replace(triangles, positions=positions)
 
 
 def _within(source: Source, positions: Float64Array, reach: float) -> Float64Array:
     """The positions, drawn back to the source where they are farther from it."""
-    if math.isinf(reach):
-        return positions
     nearest = source.tree.closest(positions).positions
     off = positions - nearest
-    lengths = np.linalg.norm(off, axis=1, keepdims=True)
-    drawn: Float64Array = nearest + off * np.minimum(1, reach / np.maximum(lengths, reach))
+    lengths = np.maximum(np.linalg.norm(off, axis=1, keepdims=True), np.finfo(np.float64).tiny)
+    drawn: Float64Array = nearest + off * np.minimum(1, reach / lengths)
     return drawn
 
 
@@ -114,6 +111,11 @@ class _Fit:
             seam=seam,
             across=source.normals_at(seam.points),
         )
+
+    def missed(self, positions: Float64Array) -> float:
+        """The mean distance from points of the source to the faces of vertices at these places."""
+        near = Tree(positions[self.faces]).closest(self.points.positions)
+        return float(np.linalg.norm(near.positions - self.points.positions, axis=1).mean())
 
     def pulls(self, positions: Float64Array, rng: np.random.Generator) -> Iterator[Pull]:
         """From points of the source, points of the moved surface, borders and seams."""

@@ -50,6 +50,9 @@ class Told:
     def made(self) -> list[Any]:
         return [SimpleNamespace(size=self.bytes, errors=self.made_errors)]
 
+    def cheapest(self) -> Any:
+        return self.found.get("cheapest", self.made[0])
+
     def sorted_bodies(self) -> Sorted:
         """Half of the faces dense, and about nine tenths of the bytes."""
         dense = np.array([True, False])
@@ -159,6 +162,13 @@ def test_an_asset_is_not_split_where_a_short_fit_shows_no_gain() -> None:
     assert found.split is None
     assert ("about", TUNING.forms.fitted * 1e-3, 0.0) in form.asked
     assert found.triangles().document.meshes == (PART,)
+
+
+def test_halves_are_set_against_the_cheapest_triangles_there_are() -> None:
+    cheap = SimpleNamespace(size=500.0, errors=EXACT)
+    found = choice(Told(10_000.0, about=candidate(), cheapest=cheap), halves(4000.0))
+    assert found.wants_field(30_000.0, 1e-3) is False
+    assert found.split is None
 
 
 def test_halves_that_cannot_be_small_are_not_made() -> None:

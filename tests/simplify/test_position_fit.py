@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from nispcodec.core.arrays import Float64Array
 from nispcodec.simplify.collapse import collapsed
 from nispcodec.simplify.curves import border_sides, ends_of, seam_sides
 from nispcodec.simplify.errors import Original
@@ -38,6 +39,22 @@ def test_the_surface_comes_much_nearer(triangles: Triangles) -> None:
     moved = fitted_positions(source, fewer, SMALL_FIT)
     assert distance(source, moved) < 0.6 * distance(source, fewer)
     assert (moved.faces == fewer.faces).all()
+
+
+def test_no_vertex_is_sent_far_away() -> None:
+    source = Source(ball())
+    fewer = collapsed(source.triangles, 40)
+    most = 0.5 * distance(source, fewer)
+    for far, within in ((0.5, True), (np.inf, False)):
+        moved = fitted_positions(source, fewer, replace(SMALL_FIT, far=far))
+        assert bool(_off(source, moved).max() <= 1.1 * most) is within
+
+
+def _off(source: Source, triangles: Triangles) -> Float64Array:
+    """How far the vertices of triangles are from a source."""
+    nearest = source.tree.closest(triangles.positions).positions
+    found: Float64Array = np.linalg.norm(triangles.positions - nearest, axis=1)
+    return found
 
 
 def test_no_face_turns_over() -> None:
