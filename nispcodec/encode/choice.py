@@ -193,6 +193,7 @@ class Choice:
 
     def _split_lost_by_trial(self, split: Split, found: Sorted) -> bool:
         """Whether a short fit of one half shows both to be hardly better than triangles alone."""
+        # While the asset's trees are there: a trial has no room for them.
         triangles = self._form.cheapest()
         self._form.forget()
         forms, tried = self._forms, self._document(split.field.trial(), ())
