@@ -7,6 +7,8 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
 
+import numpy as np
+
 from nispcodec.core.asset import TexturedMesh
 from nispcodec.core.document import Document, Field
 from nispcodec.core.memory import give_back
@@ -27,6 +29,7 @@ from nispcodec.simplify.descent import least_loss
 from nispcodec.simplify.discolored import Discolored
 from nispcodec.simplify.errors import Counted, Errors
 from nispcodec.simplify.ladder import Candidate, Simplifier
+from nispcodec.simplify.mirror import planes_of
 from nispcodec.simplify.search import best_for
 from nispcodec.simplify.triangles import Triangles, distinct_corners
 
@@ -75,7 +78,12 @@ class MeshForm:
         triangles, counted = self._triangles
         config, seed = self._config.ladder, self._seed
         told = self._tell_candidate
-        return Simplifier.of(triangles, coded_bytes, config, seed, counted, self._paint, told)
+        # Through the middle of the asset, and of the world.
+        frame = self._analysis.frame
+        planes = planes_of(frame.to_normalized(np.zeros((1, 3)))[0])
+        return Simplifier.of(
+            triangles, coded_bytes, config, seed, counted, self._paint, told, planes
+        )
 
     @cached_property
     def _paint(self) -> Paint:

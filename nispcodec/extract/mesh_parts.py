@@ -12,11 +12,16 @@ from nispcodec.core.creases import turned_sides
 from nispcodec.core.document import Document
 from nispcodec.core.mesh_part import MeshPart, Placement
 from nispcodec.core.placing import placed_points
+from nispcodec.extract.meeting import met
 
 
 def joined(document: Document, field: TexturedMesh | None) -> TexturedMesh:
     """The surface of a document's field, if it has one, and its mesh parts; world frame."""
-    return as_one(document, [*([field] if field else []), *_placed(document)])
+    pieces = list(_placed(document))
+    parts = as_one(document, pieces) if pieces else None
+    if parts and len(pieces) > 1:
+        parts = met(parts, document.frame.radius, _silent(document))
+    return as_one(document, [each for each in (field, parts) if each])
 
 
 def as_one(document: Document, pieces: Sequence[TexturedMesh]) -> TexturedMesh:
@@ -58,6 +63,12 @@ def _placed(document: Document) -> Iterator[TexturedMesh]:
     for part in document.meshes:
         for placement in part.placements:
             yield _copy(document, part, placement)
+
+
+def _silent(document: Document) -> BoolArray:
+    """(m,) bool: the faces of parts that say of no edge that it is a crease."""
+    said = [(part.placed_faces, not part.creases.any()) for part in document.meshes]
+    return np.repeat([silent for _, silent in said], [faces for faces, _ in said])
 
 
 def _copy(document: Document, part: MeshPart, placement: Placement) -> TexturedMesh:

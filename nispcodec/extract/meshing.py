@@ -217,16 +217,21 @@ def _cut(
 def _with_at_most(
     field: Field, grid: Surface, surface: Surface, faces: int, config: ExtractConfig
 ) -> tuple[Surface, Int32Array]:
-    """The grid's surface, simplified to `surface` and on to at most `faces` after being cut."""
-    target = faces
+    """The grid's surface, simplified to `surface` and on to at most `faces` after being cut.
+
+    Where that cannot be had, the fewest that were found: coarser is no longer fewer then, as seams
+    take most of the faces.
+    """
+    target, found = faces, []
     for _ in range(config.simplify.face_fittings):
         surface = simplified(field.sdf, surface, target, config.simplify)
         cut, charts = _cut(field, surface, surface is not grid, config)
+        found.append((cut, charts))
         # Far from its target it is stuck: asked for less it takes as long, and gives the same.
         if len(cut.faces) <= faces or len(surface.faces) > config.simplify.stuck * target:
             break
         target = _left_to(len(surface.faces), len(cut.faces), faces)
-    return cut, charts
+    return min(found, key=lambda each: len(each[0].faces))
 
 
 def _left_to(bare: int, cut: int, faces: int) -> int:

@@ -10,10 +10,12 @@ from scipy.spatial import cKDTree
 
 from nispcodec.core.arrays import BoolArray, Float64Array, Int32Array, Int64Array
 from nispcodec.core.asset import TexturedMesh
+from nispcodec.core.connectivity import row_ids
 from nispcodec.core.creases import turned_sides
 from nispcodec.core.mesh_part import MeshPart, Placement
 from nispcodec.core.placing import placed_points
 from nispcodec.simplify.config import RoundingConfig
+from nispcodec.simplify.mirror import Mirror
 from nispcodec.simplify.quantize import Grid, on_grids
 from nispcodec.simplify.rounding import rounded_along
 from nispcodec.simplify.scene import scene
@@ -80,12 +82,14 @@ class Copies:
     triangles  as they are to be simplified: each group with its weight, in its place
     covered    (m,) bool: the faces of the given triangles that are held, or that a copy has
     fewest_left  faces that must be left of a body for it to be placed
+    mirror     the plane that halves are reflected in, if any: it is one of the grid's
     """
 
     triangles: Triangles
     groups: tuple[Group, ...]
     covered: BoolArray
     fewest_left: int = 0
+    mirror: Mirror | None = None
 
     @staticmethod
     def none(triangles: Triangles, kept: BoolArray | None = None) -> Copies:
@@ -112,12 +116,32 @@ class Copies:
             placed.append(replace(group, weight=float(weight), shift=(x, y, z)))
         return Copies(_enlarged(held, placed), tuple(placed), covered, fewest_left)
 
+    @staticmethod
+    def of_homes(homes: Sequence[tuple[Group, Triangles]], whole: Copies, mirror: Mirror) -> Copies:
+        """Groups, with weights, and their triangles in the normalized frame, in place of others."""
+        groups, pieces, first = [], [], 0
+        for group, home in homes:
+            patches = row_ids(home.patches[:, None]) + first
+            groups.append(replace(group, patches=range(first, int(patches.max()) + 1)))
+            pieces.append(replace(home, patches=patches.astype(np.int32)))
+            first = groups[-1].patches.stop
+        triangles = _enlarged(joined(*pieces), groups)
+        return Copies(triangles, tuple(groups), whole.covered, whole.fewest_left, mirror)
+
+    @property
+    def homes(self) -> list[tuple[Group, Triangles]]:
+        """Each group with its triangles in the normalized frame."""
+        pieces = _pieces(self.triangles, self.groups)
+        return [(group, group.home(piece)) for group, piece in pieces]
+
     def parts(self, triangles: Triangles, grid: Grid, uv_grid: Grid) -> tuple[MeshPart, ...]:
         """The simplified triangles as parts, rounded to the nearest points of the grids.
 
         A group of which no face is left has no part; copies of one of which few are left are faces
         like others.
         """
+        if self.mirror is not None:
+            grid = grid.through(self.mirror.axis, self.mirror.at)
         return tuple(
             group.part(home, grid.around(home.positions), uv_grid.around(home.uvs))
             for group, home in self._held(triangles)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
@@ -17,10 +17,12 @@ from nispcodec.simplify.copies import Copies
 from nispcodec.simplify.copy_search import copies_of
 from nispcodec.simplify.discolored import Discolored
 from nispcodec.simplify.errors import Counted, Errors, Original, mesh_of
+from nispcodec.simplify.halves import with_halves
+from nispcodec.simplify.mirror import Mirror
 from nispcodec.simplify.position_fit import fitted_positions
 from nispcodec.simplify.quantize import Grid
 from nispcodec.simplify.scene import scene
-from nispcodec.simplify.shading import shaded
+from nispcodec.simplify.shading import bent_creases, shaded
 from nispcodec.simplify.source import Source
 from nispcodec.simplify.triangles import Triangles
 from nispcodec.simplify.uv_fit import fitted_uvs
@@ -62,6 +64,7 @@ class Simplifier:
     coded     the bytes of parts
     original  what errors are measured against
     told      called after each candidate
+    planes    in which halves may be reflected, where all faces are kept
     """
 
     copies: Copies
@@ -71,6 +74,7 @@ class Simplifier:
     config: LadderConfig = LadderConfig()
     seed: int = 0
     told: Callable[[], None] = lambda: None
+    planes: tuple[Mirror, ...] = ()
     _fitted: dict[int, Triangles] = field(default_factory=dict)
     _made: dict[tuple[int, int, int], Candidate] = field(default_factory=dict)
 
@@ -83,6 +87,7 @@ class Simplifier:
         counted: Counted | None = None,
         paint: Paint | None = None,
         told: Callable[[], None] = lambda: None,
+        planes: tuple[Mirror, ...] = (),
     ) -> Simplifier:
         """counted: the faces that candidates hold and that are looked for; None: all.
 
@@ -96,7 +101,7 @@ class Simplifier:
         same = len(source.triangles) == len(triangles)
         tree = source.tree if same else Tree(triangles.corners)
         original = Original.of(triangles, tree, config.samples, seed, counted, paint)
-        return Simplifier(copies, source, original, coded, config, seed, told)
+        return Simplifier(copies, source, original, coded, config, seed, told, planes)
 
     def fitted(self, faces: int) -> Triangles:
         """About so many triangles, positions fitted; the source itself for as many as it has."""
@@ -134,16 +139,34 @@ class Simplifier:
         return self._made[asked]
 
     def _rounded(self, faces: int, bits: int, uv_bits: int) -> Candidate:
-        triangles = self.fitted(faces)
-        grid = Grid.of(triangles.positions, bits)
-        if faces < len(self.source.triangles):
-            triangles = self.copies.rounded(triangles, grid, self.config.rounding, self.seed)
-            # UVs are fitted to the places that rounding leaves.
-            triangles = fitted_uvs(self.source, triangles, self.config.fit, self.seed)
-        parts = self.copies.parts(triangles, grid, Grid.of(triangles.uvs, uv_bits))
+        parts = self._parts(faces, bits, uv_bits)
         errors = self.original.errors(scene([(mesh_of(part), part.placements) for part in parts]))
         self.told()
         return Candidate(faces, parts, bits, uv_bits, errors, self.coded)
+
+    def _parts(self, faces: int, bits: int, uv_bits: int) -> tuple[MeshPart, ...]:
+        if faces >= len(self.source.triangles):
+            return _all_of(self._whole, bits, uv_bits)
+        triangles = self.fitted(faces)
+        grid = Grid.of(triangles.positions, bits)
+        triangles = self.copies.rounded(triangles, grid, self.config.rounding, self.seed)
+        # UVs are fitted to the places that rounding leaves.
+        triangles = fitted_uvs(self.source, triangles, self.config.fit, self.seed)
+        return self.copies.parts(triangles, grid, Grid.of(triangles.uvs, uv_bits))
+
+    @cached_property
+    def _whole(self) -> Copies:
+        """All triangles; those that are mirror images are held once if that takes fewer bytes."""
+        triangles = self.copies.triangles
+        # Halves do not show any more how edges turn along which they are cut.
+        resolved = replace(triangles, creases=bent_creases(triangles))
+        plain = replace(self.copies, triangles=resolved)
+        halved = with_halves(plain, self.planes, self.config.copies)
+        if halved is None:
+            return plain
+        bits = self.bits_for(self.config.tolerance, whole=True)
+        uv_bits = self.uv_bits_for(self.config.uv_tolerance)
+        return min(halved, plain, key=lambda each: self.coded(_all_of(each, bits, uv_bits)))
 
     def balanced(self, faces: int) -> Candidate:
         """About so many faces, with bits whose rounding suits the error that is there before."""
@@ -167,6 +190,12 @@ class Simplifier:
         uvs = self.source.triangles.uvs
         extent = float(np.ptp(uvs, axis=0).max()) if len(uvs) else 0.0
         return _bits(extent, self.config.uv_step * uv)
+
+
+def _all_of(copies: Copies, bits: int, uv_bits: int) -> tuple[MeshPart, ...]:
+    triangles = copies.triangles
+    grids = Grid.of(triangles.positions, bits), Grid.of(triangles.uvs, uv_bits)
+    return copies.parts(triangles, *grids)
 
 
 def _bits(extent: float, step: float) -> int:

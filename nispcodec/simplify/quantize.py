@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -12,6 +13,9 @@ from nispcodec.core.mesh_part import MAX_GRID_BITS, MeshPart
 from nispcodec.simplify.curves import own_corners
 from nispcodec.simplify.shading import written_creases
 from nispcodec.simplify.triangles import Triangles, side_numbers
+
+STEP_DIGITS = 10
+"""Binary digits of a step: its multiples up to 2^14 are exact in float32."""
 
 
 @dataclass(frozen=True)
@@ -42,6 +46,17 @@ class Grid:
         return Grid(
             low.astype(np.float64), float(np.nextafter(np.float32(step), np.float32(np.inf)))
         )
+
+    def through(self, axis: int, at: float) -> Grid:
+        """Much the same grid, with points where a coordinate is `at`.
+
+        Its step is a little longer, of so few digits that the origin is a multiple in a file, too.
+        """
+        share, exponent = math.frexp(self.step)
+        step = math.ldexp(math.ceil(math.ldexp(share, STEP_DIGITS)), exponent - STEP_DIGITS)
+        origin = self.origin.copy()
+        origin[axis] = at - step * round((at - origin[axis]) / step)
+        return Grid(origin, step)
 
     def around(self, numbers: Float64Array) -> Grid:
         """The same grid, its origin moved along it to just below all of other numbers (n, d)."""

@@ -59,17 +59,31 @@ def written_creases(welded: Triangles, config: CreaseConfig = CreaseConfig()) ->
     turns sharply, one edge that parts nothing says so.
     """
     nothing = np.zeros(welded.faces.shape, np.bool_)
-    if welded.creases is None:
+    bent = bent_creases(welded, config)
+    if welded.creases is None or bent is None:
         return nothing
-    bent = sharp_sides(welded.faces, welded.corners, config.flat)
-    mine, other = side_pairs(welded.faces)
-    creases = welded.creases.ravel().copy()
-    creases[other[creases[mine]]] = True
-    creases = creases.reshape(-1, 3) & bent
-    differ = (creases != sharp_sides(welded.faces, welded.corners)).sum()
-    if differ <= config.negligible * bent.sum():
+    # A border has no other side here, but may have one in another part.
+    numbers = side_numbers(welded.faces)
+    border = np.bincount(numbers.ravel())[numbers] == 1
+    creases = bent | (welded.creases & border)
+    differ = ((creases != sharp_sides(welded.faces, welded.corners)) & ~border).sum()
+    if differ <= config.negligible * _bent(welded, config).sum():
         return nothing
     return creases if creases.any() else _harmless(welded)
+
+
+def bent_creases(welded: Triangles, config: CreaseConfig = CreaseConfig()) -> BoolArray | None:
+    """(m, 3): the creases, both sides of an edge alike, of edges that turn; None: nobody said."""
+    if welded.creases is None:
+        return None
+    mine, other = side_pairs(welded.faces)
+    found = welded.creases.ravel().copy()
+    found[other[found[mine]]] = True
+    return found.reshape(-1, 3) & _bent(welded, config)
+
+
+def _bent(welded: Triangles, config: CreaseConfig) -> BoolArray:
+    return sharp_sides(welded.faces, welded.corners, config.flat)
 
 
 def _harmless(triangles: Triangles) -> BoolArray:

@@ -87,13 +87,20 @@ def test_by_default_there_is_a_bound_that_seams_keep_too() -> None:
     assert len(textured_mesh(exact, 64, config=config)[0].faces) > 5 * 1500
 
 
-@pytest.mark.parametrize(("faces", "least"), [(1000, 700), (300, 210), (100, 8)])
-def test_seams_are_among_the_faces_asked_for(faces: int, least: int) -> None:
+@pytest.mark.parametrize("faces", [1000, 300])
+def test_seams_are_among_the_faces_asked_for(faces: int) -> None:
     document = tiny.document(tiny.sphere(), tiny.octants())
     mesh = NispModel(document).to_mesh(48, faces=faces)
-    # Of so few the seams of eight charts leave any number.
-    assert least < len(mesh.faces) <= faces
+    assert 0.7 * faces < len(mesh.faces) <= faces
     assert mesh.warnings == ()
+
+
+def test_so_few_that_seams_take_all_are_had_or_said_not_to_be() -> None:
+    document = tiny.document(tiny.sphere(), tiny.octants())
+    mesh = NispModel(document).to_mesh(48, faces=100)
+    # The seams of eight charts leave any number of them: with other threads, another one.
+    assert 8 < len(mesh.faces) < 250
+    assert bool(mesh.warnings) == (len(mesh.faces) > 100)
 
 
 @pytest.mark.parametrize("told", [0, -1.0, float("nan"), "small", True, None])

@@ -12,13 +12,19 @@ import numpy as np
 import pytest
 
 from nispcodec.core.arrays import AnyArray
+from nispcodec.core.connectivity import row_ids
 from nispcodec.core.creases import fan_normals
 from nispcodec.core.document import Document
 from nispcodec.core.errors import FormatError
 from nispcodec.core.mesh_part import MeshPart
 from nispcodec.format import mesh, pack, unpack
 from nispcodec.model import NispModel
+from nispcodec.simplify.config import CopiesConfig
+from nispcodec.simplify.copies import Copies
+from nispcodec.simplify.halves import with_halves
+from nispcodec.simplify.mirror import planes_of
 from tests.format.mesh.parts import box, grid, part
+from tests.simplify.mirrored import body, parts_of
 from tests.web.mesh_documents import document as mesh_document
 from tests.web.mesh_documents import documents
 from tests.web.programs import HERE, answers, run_node
@@ -214,6 +220,19 @@ def test_shading_is_the_library_s_whatever_meets_in_an_edge(tmp_path: Path) -> N
         rows, fans = fan_normals(held.faces.astype(np.int64), corners, held.shading_breaks)
         ours = np.reshape(found["normals"], (-1, 3))[np.reshape(found["indices"], (-1, 3))]
         assert np.abs(ours - rows[fans[order]]).max() < 1e-4
+
+
+def test_shading_goes_on_over_borders_that_meet(tmp_path: Path) -> None:
+    copies = with_halves(Copies.none(body()), planes_of(np.zeros(3)), CopiesConfig(fewest=20))
+    assert copies is not None
+    halves = mesh_document(*parts_of(copies))
+    (tmp_path / "model.nisp").write_bytes(pack(halves))
+    found = json.loads(run_node(HERE / "meshes.mjs", "--extract", tmp_path / "model.nisp"))[0]
+    mesh = NispModel(halves).to_mesh()
+    assert mesh.creases is not None
+    rows, fans = fan_normals(row_ids(mesh.positions)[mesh.faces], mesh.corners, mesh.creases)
+    ours = np.reshape(found["normals"], (-1, 3))[np.reshape(found["indices"], (-1, 3))]
+    assert np.abs(ours - rows[fans]).max() < 1e-4
 
 
 def two_walls() -> MeshPart:

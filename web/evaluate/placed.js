@@ -32,7 +32,7 @@ export function placer({ step, origin }, placement) {
 }
 
 /** Scale, rotation and mirror, row by row (9). @param {import("../decoder/mesh/part.js").Placement} placement */
-export function matrixOf({ rotation, scale, mirrored }) {
+function matrixOf({ rotation, scale, mirrored }) {
   const length = Math.hypot(...rotation);
   const [w, x, y, z] = rotation.map((part) => part / length);
   const sign = mirrored ? -scale : scale;
@@ -44,7 +44,7 @@ export function matrixOf({ rotation, scale, mirrored }) {
 }
 
 /** The order of a triangle's corners in a copy. @param {boolean} mirrored */
-export function cornerOrder(mirrored) {
+function cornerOrder(mirrored) {
   return mirrored ? [0, 2, 1] : [0, 1, 2];
 }
 

@@ -37,6 +37,8 @@ export const EXTRACTION = Object.freeze({
   clearance: 0.02,
   // Mesh parts: where none of its edges is a crease, one is where normals lean by more than 45 degrees.
   smoothCosine: Math.SQRT1_2,
+  // Ends of borders are in one place that are nearer than this along every axis.
+  meeting: 1e-6,
   // Sides of one edge that are compared with each other: two, but for what touches there.
   edgeSides: 8,
 });

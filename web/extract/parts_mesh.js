@@ -1,14 +1,18 @@
-import { cornerOrder, matrixOf, placer } from "../evaluate/placed.js";
+import { placer } from "../evaluate/placed.js";
 import { EXTRACTION } from "./config.js";
 import { DisjointSets } from "./groups.js";
 
 /**
  * @typedef {import("../decoder/mesh/part.js").MeshPart} MeshPart
  * @typedef {import("../decoder/mesh/part.js").Placement} Placement
- * @typedef {object} SplitPart a part with one vertex for each position, normal and texture coordinate that meet
- * @property {Int32Array} vertices (3 m) of the corners
- * @property {number[]} sources a corner of each vertex
- * @property {Float64Array} normals (3 v) unit, in the part's frame
+ * @typedef {object} Copies all copies of all parts, in the normalized frame
+ * @property {Float64Array} positions (3 n)
+ * @property {Int32Array} faces (3 m) numbers of positions: ends of borders that meet have one
+ * @property {Float64Array} uvs (2 t)
+ * @property {Int32Array} uvFaces (3 m) -1 for none
+ * @property {Int32Array} charts (m)
+ * @property {Uint8Array} creases (3 m)
+ * @property {Uint8Array} silent (m) of parts that say of no edge that it is a crease
  */
 
 /**
@@ -17,28 +21,118 @@ import { DisjointSets } from "./groups.js";
  * @returns {import("./mesh.js").MeshData}
  */
 export function partsMesh(document) {
-  const split = document.parts.map(splitPart);
-  const copies = document.parts.map((part) => part.placements.length);
-  const count = split.reduce((sum, { sources }, i) => sum + sources.length * copies[i], 0);
-  const mesh = { positions: new Float32Array(3 * count), normals: new Float32Array(3 * count), uvs: new Float32Array(2 * count), charts: new Float32Array(count) };
-  const grouped = new GroupedFaces(document);
-  let [vertex, chart] = [0, document.metadata.charts];
-  document.parts.forEach((part, i) => {
-    for (const placement of part.placements) {
-      putVertices(part, placement, split[i], mesh, vertex, chart);
-      grouped.add(part, placement, split[i].vertices, vertex, chart);
-      vertex += split[i].sources.length;
-      chart += part.chartHasUv.length;
-    }
-  });
-  return { ...mesh, ...grouped.finish(), dropped: 0 };
+  const copies = placedCopies(document);
+  if (document.parts.length > 1 || document.parts[0].placements.length > 1) joinBorders(copies);
+  const { vertices, sources, normals } = split(copies);
+  const { positions, faces, uvs, uvFaces, charts } = copies;
+  /** @param {(corner: number) => ArrayLike<number>} of a corner's numbers */
+  const all = (of) => Float32Array.from(sources.flatMap((corner) => Array.from(of(corner))));
+  return {
+    positions: all((corner) => positions.subarray(3 * faces[corner], 3 * faces[corner] + 3)),
+    normals,
+    uvs: all((corner) => (uvFaces[corner] < 0 ? [0, 0] : uvs.subarray(2 * uvFaces[corner], 2 * uvFaces[corner] + 2))),
+    charts: all((corner) => [charts[Math.floor(corner / 3)]]),
+    ...byMaterial(document, charts, vertices),
+    dropped: 0,
+  };
 }
 
-/** @param {MeshPart} part @returns {SplitPart} */
-function splitPart(part) {
-  const { faces, uvFaces, faceCharts } = part;
-  const smooth = smoothGroups(part);
-  const sums = normalSums(part, smooth);
+/** @param {import("../decoder/document.js").Document} document @returns {Copies} */
+function placedCopies({ parts, metadata }) {
+  const sum = (/** @type {(part: MeshPart) => number} */ of) => parts.reduce((total, part) => total + of(part) * part.placements.length, 0);
+  const faces = sum((part) => part.faceCharts.length);
+  const copies = {
+    positions: new Float64Array(sum((part) => part.positions.length)),
+    faces: new Int32Array(3 * faces),
+    uvs: new Float64Array(sum((part) => part.uvs.length)),
+    uvFaces: new Int32Array(3 * faces),
+    charts: new Int32Array(faces),
+    creases: new Uint8Array(3 * faces),
+    silent: new Uint8Array(faces),
+  };
+  let at = { face: 0, position: 0, uv: 0, chart: metadata.charts };
+  for (const part of parts) {
+    const silent = part.creases.some(Boolean) ? 0 : 1;
+    for (const placement of part.placements) {
+      putCopy(part, placement, silent, copies, at);
+      at = {
+        face: at.face + part.faceCharts.length,
+        position: at.position + part.positions.length / 3,
+        uv: at.uv + part.uvs.length / 2,
+        chart: at.chart + part.chartHasUv.length,
+      };
+    }
+  }
+  return copies;
+}
+
+/**
+ * One copy of a part, from the numbers in `at` on.
+ * @param {MeshPart} part @param {Placement} placement @param {number} silent @param {Copies} copies
+ * @param {{face: number, position: number, uv: number, chart: number}} at
+ */
+function putCopy(part, placement, silent, copies, at) {
+  const put = placer(part, placement);
+  for (let i = 0; i < part.positions.length; i += 3) {
+    put(part.positions[i], part.positions[i + 1], part.positions[i + 2], copies.positions, 3 * at.position + i);
+  }
+  part.uvs.forEach((value, i) => {
+    const axis = i % 2;
+    const own = value * part.uvStep[axis] + part.uvOrigin[axis];
+    copies.uvs[2 * at.uv + i] = own * placement.uvScale[axis] + placement.uvOffset[axis];
+  });
+  // Sides go from each corner to the next: the other way round the last one comes first.
+  const [corners, sides] = placement.mirrored ? [[0, 2, 1], [2, 1, 0]] : [[0, 1, 2], [0, 1, 2]];
+  part.faceCharts.forEach((chart, face) => {
+    copies.charts[at.face + face] = at.chart + chart;
+    copies.silent[at.face + face] = silent;
+    for (let i = 0; i < 3; i++) {
+      const [to, from] = [3 * (at.face + face) + i, 3 * face + corners[i]];
+      copies.faces[to] = at.position + part.faces[from];
+      copies.uvFaces[to] = part.uvFaces[from] < 0 ? -1 : at.uv + part.uvFaces[from];
+      copies.creases[to] = part.creases[3 * face + sides[i]];
+    }
+  });
+}
+
+/** Gives the ends of borders that lie on each other one number. @param {Copies} copies */
+function joinBorders({ positions, faces }) {
+  const ends = new Set(borderSides(faces).flatMap((side) => [faces[side], faces[sideAfter(side)]]));
+  const vertices = Int32Array.from(ends);
+  const runs = [0, 1, 2].map((axis) => runsOf(vertices, (vertex) => positions[3 * vertex + axis]));
+  /** @type {Map<string, number>} */
+  const places = new Map();
+  /** @type {Map<number, number>} */
+  const firsts = new Map();
+  for (const vertex of vertices) {
+    const key = runs.map((run) => run.get(vertex)).join();
+    if (!places.has(key)) places.set(key, vertex);
+    firsts.set(vertex, /** @type {number} */ (places.get(key)));
+  }
+  faces.forEach((vertex, corner) => (faces[corner] = firsts.get(vertex) ?? vertex));
+}
+
+/** A number for each run of vertices whose values are near the next one's. @param {Int32Array} vertices @param {(vertex: number) => number} value */
+function runsOf(vertices, value) {
+  const order = vertices.slice().sort((a, b) => value(a) - value(b));
+  let run = 0;
+  return new Map(Array.from(order, (vertex, i) => [vertex, i && value(vertex) - value(order[i - 1]) > EXTRACTION.meeting ? ++run : run]));
+}
+
+/** Sides of edges that have no other. @param {Int32Array} faces */
+function borderSides(faces) {
+  return [...edgesOf(faces).values()].filter((sides) => sides.length === 1).flat();
+}
+
+/**
+ * One vertex for each position, normal and texture coordinate that meet.
+ * @param {Copies} copies
+ * @returns {{vertices: Int32Array, sources: number[], normals: Float32Array}} of the corners (3 m), a corner of each vertex, unit
+ */
+function split(copies) {
+  const { faces, uvFaces, charts } = copies;
+  const smooth = smoothGroups(copies);
+  const sums = normalSums(copies, smooth);
   /** @type {Map<number, number>} */
   const numbers = new Map();
   /** @type {number[]} */
@@ -46,7 +140,7 @@ function splitPart(part) {
   const most = 2 * faces.length;
   const vertices = faces.map((_, corner) => {
     // A texture coordinate is of one chart.
-    const look = uvFaces[corner] >= 0 ? uvFaces[corner] : faces.length + faceCharts[Math.floor(corner / 3)];
+    const look = uvFaces[corner] >= 0 ? uvFaces[corner] : faces.length + charts[Math.floor(corner / 3)];
     const key = smooth[corner] * most + look;
     let number = numbers.get(key);
     if (number === undefined) {
@@ -55,17 +149,18 @@ function splitPart(part) {
     }
     return number;
   });
-  const normals = new Float64Array(3 * sources.length);
+  const normals = new Float32Array(3 * sources.length);
   sources.forEach((corner, i) => normals.set(sums.subarray(3 * smooth[corner], 3 * smooth[corner] + 3), 3 * i));
   return { vertices, sources, normals };
 }
 
-/** A number for the corners (3 m) at a vertex that no crease parts. @param {MeshPart} part */
-function smoothGroups(part) {
-  const { faces } = part;
+/** A number for the corners (3 m) at a vertex that no crease parts. @param {Copies} copies */
+function smoothGroups(copies) {
+  const { faces, silent } = copies;
   const pairs = sidePairs(faces);
-  const cosines = pairCosines(part, pairs);
-  const creases = part.creases.some(Boolean) ? part.creases : sharpSides(faces.length, pairs, cosines);
+  const cosines = pairCosines(copies, pairs);
+  const sharp = sharpSides(faces.length, pairs, cosines);
+  const creases = copies.creases.map((crease, side) => (silent[Math.floor(side / 3)] ? sharp[side] : crease));
   const others = new Int32Array(faces.length);
   for (const [mine] of pairs) others[mine]++;
   const sets = new DisjointSets(faces.length);
@@ -79,8 +174,8 @@ function smoothGroups(part) {
   return sets.labels().labels;
 }
 
-/** All pairs of sides of one edge, both ways, but of faces back to back. @param {Int32Array} faces @returns {[number, number][]} */
-function sidePairs(faces) {
+/** The sides of each edge. @param {Int32Array} faces */
+function edgesOf(faces) {
   /** @type {Map<number, number[]>} */
   const edges = new Map();
   faces.forEach((vertex, side) => {
@@ -90,9 +185,14 @@ function sidePairs(faces) {
     if (sides) sides.push(side);
     else edges.set(key, [side]);
   });
+  return edges;
+}
+
+/** All pairs of sides of one edge, both ways, but of faces back to back. @param {Int32Array} faces @returns {[number, number][]} */
+function sidePairs(faces) {
   /** @type {[number, number][]} */
   const pairs = [];
-  for (const sides of edges.values()) {
+  for (const sides of edgesOf(faces).values()) {
     for (let turn = 1; turn < Math.min(sides.length, EXTRACTION.edgeSides); turn++) {
       sides.forEach((mine, i) => {
         const other = sides[(i + turn) % sides.length];
@@ -103,7 +203,7 @@ function sidePairs(faces) {
   return pairs;
 }
 
-/** Of the normals of both faces; 0 where one has no area. @param {MeshPart} part @param {[number, number][]} pairs */
+/** Of the normals of both faces; 0 where one has no area. @param {Copies} copies @param {[number, number][]} pairs */
 function pairCosines({ faces, positions }, pairs) {
   const normals = Array.from({ length: faces.length / 3 }, (_, face) => faceNormal(faces, positions, 3 * face));
   const lengths = normals.map((normal) => Math.hypot(...normal));
@@ -134,14 +234,14 @@ function cross(a, b) {
   return [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
 }
 
-/** As long as twice the face's area, in units of the grid. @param {Int32Array} faces @param {Int32Array} positions @param {number} corner the face's first */
+/** As long as twice the face's area. @param {Int32Array} faces @param {Float64Array} positions @param {number} corner the face's first */
 function faceNormal(faces, positions, corner) {
   const at = (/** @type {number} */ i, /** @type {number} */ axis) => positions[3 * faces[corner + i] + axis];
   const [u, v] = [1, 2].map((i) => [0, 1, 2].map((axis) => at(i, axis) - at(0, axis)));
   return cross(u, v);
 }
 
-/** Normals of groups of corners, weighted by area times angle, of unit length; +z where they cancel. @param {MeshPart} part @param {Int32Array} groups */
+/** Normals of groups of corners, weighted by area times angle, of unit length; +z where they cancel. @param {Copies} copies @param {Int32Array} groups */
 function normalSums({ faces, positions }, groups) {
   const sums = new Float64Array(3 * faces.length);
   for (let corner = 0; corner < faces.length; corner += 3) {
@@ -159,7 +259,7 @@ function normalSums({ faces, positions }, groups) {
   return sums;
 }
 
-/** A face's angle at a corner: however a flat surface is cut into triangles, it counts the same. @param {Int32Array} faces @param {Int32Array} positions @param {number} corner */
+/** A face's angle at a corner: however a flat surface is cut into triangles, it counts the same. @param {Int32Array} faces @param {Float64Array} positions @param {number} corner */
 function angleAt(faces, positions, corner) {
   const [u, v] = [1, 2].map((steps) =>
     [0, 1, 2].map((axis) => positions[3 * faces[sideAfter(corner, steps)] + axis] - positions[3 * faces[corner] + axis]),
@@ -168,62 +268,27 @@ function angleAt(faces, positions, corner) {
 }
 
 /**
- * The vertices of one copy, from `first` on.
- * @param {MeshPart} part @param {Placement} placement @param {SplitPart} split
- * @param {{positions: Float32Array, normals: Float32Array, uvs: Float32Array, charts: Float32Array}} mesh
- * @param {number} first @param {number} chart the copy's first
+ * The faces' vertices by material, and whether they have texture coordinates.
+ * @param {import("../decoder/document.js").Document} document @param {Int32Array} charts (m) @param {Int32Array} vertices (3 m)
  */
-function putVertices(part, placement, { sources, normals }, mesh, first, chart) {
-  const { positions, faces, uvs, uvFaces, uvStep, uvOrigin, faceCharts } = part;
-  const put = placer(part, placement);
-  const turn = matrixOf(placement).map((value) => value / placement.scale);
-  sources.forEach((corner, i) => {
-    const at = first + i;
-    const place = 3 * faces[corner];
-    put(positions[place], positions[place + 1], positions[place + 2], mesh.positions, 3 * at);
-    for (let row = 0; row < 3; row++) {
-      mesh.normals[3 * at + row] = turn[3 * row] * normals[3 * i] + turn[3 * row + 1] * normals[3 * i + 1] + turn[3 * row + 2] * normals[3 * i + 2];
-    }
-    const node = uvFaces[corner];
-    for (let axis = 0; axis < 2 && node >= 0; axis++) {
-      const value = uvs[2 * node + axis] * uvStep[axis] + uvOrigin[axis];
-      mesh.uvs[2 * at + axis] = value * placement.uvScale[axis] + placement.uvOffset[axis];
-    }
-    mesh.charts[at] = chart + faceCharts[Math.floor(corner / 3)];
+function byMaterial({ chartMaterials, chartHasUv }, charts, vertices) {
+  const keys = chartMaterials.map((material, chart) => 2 * material + (chartHasUv[chart] ? 1 : 0));
+  /** @type {Map<number, number[]>} */
+  const corners = new Map();
+  charts.forEach((chart, face) => {
+    let list = corners.get(keys[chart]);
+    if (!list) corners.set(keys[chart], (list = []));
+    list.push(vertices[3 * face], vertices[3 * face + 1], vertices[3 * face + 2]);
   });
-}
-
-/** Faces by material, and whether they have texture coordinates. */
-class GroupedFaces {
-  /** @param {import("../decoder/document.js").Document} document */
-  constructor({ chartMaterials, chartHasUv }) {
-    this.keys = chartMaterials.map((material, chart) => 2 * material + (chartHasUv[chart] ? 1 : 0));
-    /** @type {Map<number, number[]>} */
-    this.corners = new Map();
-  }
-
-  /** @param {MeshPart} part @param {Placement} placement @param {Int32Array} vertices @param {number} first @param {number} chart */
-  add(part, placement, vertices, first, chart) {
-    const order = cornerOrder(placement.mirrored);
-    part.faceCharts.forEach((own, face) => {
-      const key = this.keys[chart + own];
-      let list = this.corners.get(key);
-      if (!list) this.corners.set(key, (list = []));
-      for (const corner of order) list.push(first + vertices[3 * face + corner]);
-    });
-  }
-
-  finish() {
-    const lists = [...this.corners].sort(([a], [b]) => a - b);
-    const indices = new Uint32Array(lists.reduce((sum, [, list]) => sum + list.length, 0));
-    let start = 0;
-    const groups = lists.map(([key, list]) => {
-      indices.set(list, start);
-      start += list.length;
-      return { start: start - list.length, count: list.length, material: key >> 1, textured: Boolean(key & 1), fitted: false };
-    });
-    return { indices, groups };
-  }
+  const lists = [...corners].sort(([a], [b]) => a - b);
+  const indices = new Uint32Array(vertices.length);
+  let start = 0;
+  const groups = lists.map(([key, list]) => {
+    indices.set(list, start);
+    start += list.length;
+    return { start: start - list.length, count: list.length, material: key >> 1, textured: Boolean(key & 1), fitted: false };
+  });
+  return { indices, groups };
 }
 
 /** @param {number[]} a @param {number[]} b */
