@@ -26,6 +26,7 @@ class Sorted:
     dense_size  bytes that the dense ones take as triangles, about, ...
     other_size  ... and that the others take ...
     distance    ... at this mean distance, normalized frame
+    sheets      whether some of the others are open surfaces
     """
 
     dense: BoolArray
@@ -33,6 +34,7 @@ class Sorted:
     dense_size: float
     other_size: float
     distance: float
+    sheets: bool
 
 
 def sort_bodies(seen: Shown, frame: Frame, candidate: Candidate, config: FormConfig) -> Sorted:
@@ -55,6 +57,7 @@ def sort_bodies(seen: Shown, frame: Frame, candidate: Candidate, config: FormCon
         dense_size=float(size[dense].sum()),
         other_size=float(size[~dense].sum()),
         distance=candidate.errors.distance,
+        sheets=bool((sheet & (faces > 0)).any()),
     )
 
 

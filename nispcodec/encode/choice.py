@@ -174,7 +174,8 @@ class Choice:
         forms, found = self._forms, self._form.sorted_bodies()
         triangles = found.dense_size + found.other_size
         hope = forms.least_networks + found.other_size
-        if not found.other.any() or hope > forms.worth_mixing * min(size, triangles):
+        few = not found.sheets and found.other_size < forms.notable_others * triangles
+        if few or not found.other.any() or hope > forms.worth_mixing * min(size, triangles):
             return None
         split = self._halves(found)
         if split is None:

@@ -171,6 +171,8 @@ class FormConfig:
     dense            source faces for each that simplification leaves from which on a body is dense
                      and smooth: networks suit it
     notable_body     share of the triangles' bytes from which on a body may be worth networks
+    notable_others   the same of all bodies together that are no sheets and not worth networks of
+                     their own, from which on they are worth triangles: networks hold a few more
     least_networks   bytes that no networks of the preset `balanced` stayed below
     worth_mixing     share of the bytes of both pure forms that some bodies as networks and others
                      as triangles may take at most, foreseen
@@ -218,6 +220,7 @@ class FormConfig:
     most_worth: float = 3.0
     dense: float = 3.0
     notable_body: float = 0.03
+    notable_others: float = 0.05
     least_networks: float = 3000.0
     worth_mixing: float = 0.9
     worth_mixing_tried: float = 0.68

@@ -53,10 +53,12 @@ class Told:
     def cheapest(self) -> Any:
         return self.found.get("cheapest", self.made[0])
 
+    others, sheets = 0.1, False
+
     def sorted_bodies(self) -> Sorted:
-        """Half of the faces dense, and about nine tenths of the bytes."""
-        dense = np.array([True, False])
-        return Sorted(dense, ~dense, 0.9 * self.bytes, 0.1 * self.bytes, 3.5e-4)
+        """Half of the faces dense, and all but the others' share of the bytes."""
+        dense, others = np.array([True, False]), self.others * self.bytes
+        return Sorted(dense, ~dense, self.bytes - others, others, 3.5e-4, self.sheets)
 
     def __getattr__(self, name: str) -> Any:
         def answer(*limits: float, stage: str = "surface") -> Any:
@@ -169,6 +171,17 @@ def test_halves_are_set_against_the_cheapest_triangles_there_are() -> None:
     found = choice(Told(10_000.0, about=candidate(), cheapest=cheap), halves(4000.0))
     assert found.wants_field(30_000.0, 1e-3) is False
     assert found.split is None
+
+
+@pytest.mark.parametrize(("others", "sheets"), [(0.04, False), (0.04, True), (0.06, False)])
+def test_few_small_bodies_go_with_the_networks_unless_they_are_sheets(
+    others: float, sheets: bool
+) -> None:
+    form = Told(10_000.0, errors=EXACT)
+    form.made_errors, form.others, form.sheets = FAR_OFF, others, sheets
+    found = choice(form, halves(4000.0))
+    found.wants_field(30_000.0, 1e-3)
+    assert (found.split is None) is (others < 0.05 and not sheets)
 
 
 def test_halves_that_cannot_be_small_are_not_made() -> None:

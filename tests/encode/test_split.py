@@ -35,7 +35,7 @@ def whole(mesh: TexturedMesh) -> FieldForm:
 
 
 def sorted_by(dense: BoolArray) -> Sorted:
-    return Sorted(dense, ~dense, 5000.0, 500.0, 1e-3)
+    return Sorted(dense, ~dense, 5000.0, 500.0, 1e-3, sheets=False)
 
 
 def test_halves_have_the_frame_of_the_whole_and_all_of_their_bodies() -> None:
