@@ -104,7 +104,6 @@ RESULTS = (
     ),
     CommittedResult("paper_uv_scatter.json", "benchmarks.paper.uv_scatter", (*ROUND_TRIP, *RENDER)),
     CommittedResult("pruning.json", "benchmarks.paper.pruning", (*TRAIN, *FORMAT)),
-    CommittedResult("bits.json", "benchmarks.studies.bits", ENCODE),
     CommittedResult("codings.json", "benchmarks.studies.codings", FORMAT),
     CommittedResult("crossover.json", "benchmarks.studies.crossover", (*ROUND_TRIP, *RIVALS)),
     CommittedResult("curve.json", "benchmarks.studies.curve", ROUND_TRIP),

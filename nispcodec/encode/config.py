@@ -249,13 +249,14 @@ class FormConfig:
     def error_cost(self, errors: Errors) -> float:
         """The weight of errors at equal bytes: logarithms of distance, and of mean and median UV.
 
-        Networks have the better medians, triangles the better means: colors follow both. Surface
-        that is made up or lost does not count: a little of it, far away, would outweigh all else.
+        And of colors, as in `cost`. Networks have the better medians, triangles the better means.
+        Surface that is made up or lost does not count: a little of it, far away, would outweigh all
+        else.
         """
         uvs = [math.log(max(each, self.negligible_uv)) for each in (errors.uv, errors.uv_median)]
         near = max(errors.distance - errors.far_part, self.negligible)
         distance = self.distance_weight * math.log(near)
-        return distance + self.uv_weight * sum(uvs) / len(uvs)
+        return distance + self.uv_weight * sum(uvs) / len(uvs) + self._discoloration(errors)
 
     def worth(self, errors: Errors) -> float:
         """Times the bytes of a form with these errors that one as near without others may take."""
@@ -263,9 +264,11 @@ class FormConfig:
 
     def _blemishes(self, errors: Errors) -> float:
         """What wrong colors and surface made up or lost add to the cost; 0 for negligible ones."""
-        wrong = max(errors.color / self.negligible_color, 1.0)
         far = max(errors.made_up.share, errors.lost.share) / self.notable_far
-        return self.color_weight * math.log(wrong) + self.far_weight * math.log1p(far)
+        return self._discoloration(errors) + self.far_weight * math.log1p(far)
+
+    def _discoloration(self, errors: Errors) -> float:
+        return self.color_weight * math.log(max(errors.color / self.negligible_color, 1.0))
 
 
 @dataclass(frozen=True)

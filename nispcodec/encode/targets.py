@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
@@ -20,7 +20,6 @@ from nispcodec.train.config import TargetConfig, TrainingBudget
 from nispcodec.train.prune import Pruning
 from nispcodec.train.sizing import (
     Hidden,
-    bits_of,
     bytes_of,
     even_width,
     hidden_layers,
@@ -67,7 +66,7 @@ class FitContext:
         """The preset's networks after the few steps of a trial, rounded once."""
         short = replace(self.budget, steps=self.budget.trial, rounding=math.inf)
         hidden = self.hidden_layers(self.probed, self.budget.scale)
-        tasks = replace(self, budget=short).tasks(hidden, self.probed, {})
+        tasks = replace(self, budget=short).tasks(hidden, self.probed)
         once = [replace(task, foreseen=math.inf) for task in tasks]
         return self.fit(once, _as_one(self.listen, TRIAL))
 
@@ -82,12 +81,9 @@ class FitContext:
         """As large as the probes' held-out errors ask for, `scale` times as wide."""
         return hidden_layers(errors, self.problem.area, scale, self.problem.config.sizing)
 
-    def tasks(
-        self, hidden: Hidden, errors: Mapping[str, float], bit_budgets: Mapping[str, float]
-    ) -> list[Task]:
+    def tasks(self, hidden: Hidden, errors: Mapping[str, float]) -> list[Task]:
         """The tasks for networks with these hidden layers."""
-        tasks = sine_tasks(self.problem, hidden, self.budget, errors, bit_budgets)
-        return pruned(tasks, self.prunings)
+        return pruned(sine_tasks(self.problem, hidden, self.budget, errors), self.prunings)
 
 
 def _as_one(listen: Listener, stage: str) -> Listener:
@@ -117,7 +113,7 @@ def fit_with_preset(context: FitContext, wanted: Callable[[float, float], bool])
         return {}
     errors = context.probed
     hidden = context.hidden_layers(errors, context.budget.scale)
-    return context.fit(context.tasks(hidden, errors, {}), context.listen)
+    return context.fit(context.tasks(hidden, errors), context.listen)
 
 
 def fit_to_size(
@@ -136,19 +132,65 @@ def fit_to_size(
         raise TargetSizeError(math.ceil(least), size)
     if not wanted(size, context.probed["sdf"]):
         return {}
-    hidden, budgets = _shared(context, size - besides)
-    networks: Networks = {}
-    again = list(budgets)
-    for _ in range(context.problem.config.target.rounds):
-        tasks = context.tasks(hidden, context.probed, budgets)
-        # The same seed gives the same weights: what is fitted again is rounded more coarsely.
-        networks |= context.fit([task for task in tasks if task.name in again], context.listen)
-        over = _bytes(document(networks), TXTR) - size
-        if over <= 0:
+    tasks = context.tasks(_hidden_for(context, size - besides), context.probed)
+    floats = context.fit([replace(task, quantization=None) for task in tasks], context.listen)
+    fitted = [replace(task, fitted=floats[task.name]) for task in tasks]
+
+    def rounded(octaves: float) -> tuple[Networks, int]:
+        networks = context.fit([_coarser(task, octaves) for task in fitted], context.listen)
+        return networks, _bytes(document(networks), TXTR)
+
+    weights = sum(task.spec.weight_count for task in tasks)
+    return _rounded_to(size, rounded, weights, context.problem.config.target)
+
+
+def _coarser(task: Task, octaves: float) -> Task:
+    assert task.quantization is not None
+    return replace(task, quantization=replace(task.quantization, coarser=octaves))
+
+
+def _rounded_to(
+    size: float,
+    rounded: Callable[[float], tuple[Networks, int]],
+    weights: int,
+    config: TargetConfig,
+) -> Networks:
+    """The networks of the most bytes up to `size` of those tried, all rounded alike.
+
+    `rounded` says networks and bytes for octaves by which they are rounded more coarsely. Raises
+    TargetSizeError where none is small enough.
+    """
+    octaves, tried = 0.0, list[tuple[float, int]]()
+    best, most = Networks(), 0
+    for _ in range(config.roundings):
+        networks, found = rounded(octaves)
+        tried.append((octaves, found))
+        if most < found <= size:
+            best, most = networks, found
+        if config.enough * size <= found <= size:
             break
-        again = [min(budgets, key=lambda name: budgets[name])]
-        budgets[again[0]] -= 8 * (over + context.problem.config.target.spare)
-    return networks
+        octaves = _next_octaves(tried, size, weights, config)
+    if not best:
+        raise TargetSizeError(min(found for _, found in tried), size)
+    return best
+
+
+def _next_octaves(
+    tried: Sequence[tuple[float, int]], size: float, weights: int, config: TargetConfig
+) -> float:
+    """Where bytes should be those aimed at, by the last two tries.
+
+    Before there are two, an octave takes a bit of each weight; always a byte at least.
+    """
+    last, found = tried[-1]
+    fall = weights / 8
+    if len(tried) > 1:
+        before, more = tried[-2]
+        fall = max((more - found) / (last - before), 1.0)
+    wanted = last + (found - config.aim * size) / fall
+    large = max((each for each, found in tried if found > size), default=-config.farthest)
+    small = min((each for each, found in tried if found <= size), default=config.farthest)
+    return wanted if large < wanted < small else (large + small) / 2
 
 
 def _least_bytes(
@@ -162,16 +204,13 @@ def _least_bytes(
     return besides, besides + bytes_of(tiny, sizing)
 
 
-def _shared(context: FitContext, room: float) -> tuple[Hidden, dict[str, float]]:
-    """Hidden layers whose networks take so many bytes, and the bits of each."""
+def _hidden_for(context: FitContext, room: float) -> Hidden:
+    """Hidden layers whose networks should take so many bytes."""
     problem, errors, sizing = context.problem, context.probed, context.problem.config.sizing
     scale = scale_for_bytes(
         lambda scale: bytes_of(problem.specs(context.hidden_layers(errors, scale)), sizing), room
     )
-    hidden = context.hidden_layers(errors, scale)
-    specs = problem.specs(hidden)
-    share = room / bytes_of(specs, sizing)
-    return hidden, {name: share * bits for name, bits in bits_of(specs, sizing).items()}
+    return context.hidden_layers(errors, scale)
 
 
 def fit_to_error(context: FitContext, wanted: float) -> Networks:
@@ -189,7 +228,7 @@ def fit_to_error(context: FitContext, wanted: float) -> Networks:
     tried: dict[int, float] = {}
     for _ in range(config.rounds):
         networks.pop("sdf", None)
-        tasks = [task for task in context.tasks(hidden, errors, {}) if task.name not in networks]
+        tasks = [task for task in context.tasks(hidden, errors) if task.name not in networks]
         networks |= context.fit(tasks, context.listen)
         used = hidden["sdf"][0]
         tried[used] = error = _distance_error(context.problem, networks["sdf"])

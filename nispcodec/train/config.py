@@ -66,6 +66,10 @@ class MuonConfig:
     most: float = 400.0
     quintic: tuple[float, float, float] = (3.4445, -4.7750, 2.0315)
     rounds: int = 5
+    aim: float = 0.995
+    enough: float = 0.985
+    farthest: float = 32.0
+    roundings: int = 8
 
 
 @dataclass(frozen=True)
@@ -154,11 +158,8 @@ class QuantizeConfig:
     entries            per-point derivatives in memory at a time
     newton_shares      of Newton's step that are tried: beyond some way the outputs are no longer
                        straight in the weights
-    header_bits        that a file spends on a tensor besides its symbols
     finest, coarsest   bounds of a step
     step_resolution    of candidate steps, in octaves
-    budget_range       octaves either way in which steps that fit a bit budget are sought ...
-    budget_tolerance   ... to so many
     tries              with other samples each time, as the samples may overlook what costs most
     slight             times the held-out error that needs no other try ...
     large              ... but for networks of so many weights, whose rounding takes long, ...
@@ -177,12 +178,9 @@ class QuantizeConfig:
     block: int = 2_520
     entries: int = 2_000_000
     newton_shares: tuple[float, ...] = (0.0, 0.1, 0.3, 1.0)
-    header_bits: int = 52
     finest: float = 1e-6
     coarsest: float = 1e3
     step_resolution: float = 1 / 16
-    budget_range: float = 32.0
-    budget_tolerance: float = 1e-3
     tries: int = 3
     slight: float = 1.05
     large: int = 8_000
@@ -271,7 +269,9 @@ class NetworkConfig:
 class TrainingBudget:
     """How much a preset may spend on an asset.
 
-    steps        of the SDF; other networks take their share
+    steps        of the SDF, of all starts; other networks take their share
+    starts       fits of an SDF that is not of fine detail, of which the best is kept: a fifth
+                 either way is left to chance, and what is beyond 50,000 steps gains less
     scale        of all widths
     minings      of hard examples at least; without them parts go missing that are a small share of
                  the area ...
@@ -298,6 +298,7 @@ class TrainingBudget:
     samples: float = 1.0
     rounding: float = 1.0
     trial: int = 0
+    starts: int = 1
     mesh: float = 6e-4
     worth: float = 1.0
 
@@ -325,7 +326,10 @@ class TargetConfig:
     slope        the error falls with this power of the SDF's width, until two fits say better ...
     slopes       ... within these
     rounds       fits at most
-    spare        bytes by which a file that was too large is to be smaller than asked
+    aim          share of a size that networks are aimed at ...
+    enough       ... and from which on they are not rounded again
+    farthest     octaves by which they may be rounded more coarsely, or more finely, than usual
+    roundings    at most, of networks that are fitted once
     least_error  samples, float32 and the extracted mesh are good for no less
     """
 
@@ -333,7 +337,10 @@ class TargetConfig:
     slope: float = 0.7
     slopes: tuple[float, float] = (0.3, 1.5)
     rounds: int = 5
-    spare: float = 8.0
+    aim: float = 0.995
+    enough: float = 0.985
+    farthest: float = 32.0
+    roundings: int = 8
     least_error: float = 2e-5
 
 
@@ -370,7 +377,7 @@ class TrainConfig:
         default_factory=lambda: {
             "fast": TrainingBudget(9_000, 0.8, 3, 800, 0.7, samples=0.5, rounding=1.25, mesh=1e-3),
             "balanced": TrainingBudget(40_000, 1.0, 9, 2000, trial=8000),
-            "best": TrainingBudget(200_000, 1.2, 15, 4000, mesh=1e-4, worth=3.0),
+            "best": TrainingBudget(200_000, 1.2, 15, 4000, 0.8, starts=4, mesh=1e-4, worth=3.0),
         }
     )
     batch: int = 1024

@@ -41,16 +41,51 @@ def train(
     A run whose held-out error explodes goes on from its best weights at half the rate; where lower
     rates do not help, the best network so far is what there is, and a note says so. A run that
     ended far worse than was foreseen is made again from another seed, unless a `mask`
-    ties it to its initial weights; the better of the two stays. At the end the weights are rounded
-    (`nispcodec.train.quantize`), if the task says how.
+    ties it to its initial weights; the better of the two stays. So does the best of as many runs as
+    the task has `starts`. At the end the weights are rounded
+    (`nispcodec.train.quantize`), if the task says how. A network that was fitted before is only
+    rounded.
     Raises FitError for a network that is far worse than a constant, whose weights cannot be
     rounded, or that the engine does not train.
     """
-    run = _Run(task, seed, engine, core, listen, mask)
-    run.fit()
+    if task.fitted is not None:
+        run = _Run(task, seed, engine, core, listen, mask)
+        run.take(task.fitted)
+        return run.network()
+    starts = task.starts if mask is None else 1
+    runs = (
+        _fitted(_Run(task, each, engine, core, _part(listen, number, starts), mask))
+        for number, each in enumerate(_seeds(seed, starts))
+    )
+    run = min(runs, key=_comparable_error)
     if mask is None and run.went_wrong:
-        run = min(run, _made_again(run, seed, engine), key=lambda each: each.comparable_error)
+        run = min(run, _made_again(run, seed, engine), key=_comparable_error)
     return run.network()
+
+
+def _seeds(seed: int, count: int) -> list[int]:
+    """Seeds whose initial weights are as far from each other as they can be."""
+    return [seed + number * (MAX_INIT_SEED + 1) // count for number in range(count)]
+
+
+def _part(listen: Listener, number: int, count: int) -> Listener:
+    """A listener to one run of several, which are told as one."""
+
+    def heard(update: Progress) -> None:
+        done = number * update.steps + update.step
+        listen(replace(update, step=done, steps=count * update.steps))
+
+    return heard
+
+
+def _comparable_error(run: _Run) -> float:
+    """The best held-out error; infinite where there was none."""
+    return run.best_error if math.isfinite(run.best_error) else math.inf
+
+
+def _fitted(run: _Run) -> _Run:
+    run.fit()
+    return run
 
 
 def _made_again(run: _Run, seed: int, engine: Engine) -> _Run:
@@ -65,9 +100,7 @@ def _made_again(run: _Run, seed: int, engine: Engine) -> _Run:
     def heard(update: Progress) -> None:
         run.listen(replace(update, step=task.schedule.steps, steps=task.schedule.steps))
 
-    again = _Run(task_again, seed + (MAX_INIT_SEED + 1) // 2, engine, run.core, heard, None)
-    again.fit()
-    return again
+    return _fitted(_Run(task_again, _seeds(seed, 2)[1], engine, run.core, heard, None))
 
 
 class _Run:
@@ -88,27 +121,24 @@ class _Run:
         self.task, self.config = task, task.config
         self.core, self.listen = core, listen
         self.random = np.random.default_rng(seed)
-        self.layout = WeightLayout(replace(task.spec, init_seed=seed % (MAX_INIT_SEED + 1)))
+        init_seed = task.fitted.spec.init_seed if task.fitted else seed % (MAX_INIT_SEED + 1)
+        self.layout = WeightLayout(replace(task.spec, init_seed=init_seed))
         self.first = initial_weights(self.layout.spec, task.schedule.w0_scale)
         self.kept = self.layout.kept(mask)
         self.trainer = engine.trainer(task, self._start(), self.kept)
         self.best = self.trainer.weights
-        self.error_radii = engine.error_radii(task) if task.schedule.minings else None
+        mines = task.schedule.minings and task.fitted is None
+        self.error_radii = engine.error_radii(task) if mines else None
         self.batches = Batches(len(task.samples), task.schedule.batch, self.random)
         self.hardness: FloatArray = np.zeros(len(task.samples), dtype=np.float32)
         self.rates = _rates(task.schedule, self.config.loop)
-
-    @property
-    def comparable_error(self) -> float:
-        """The best held-out error; infinite where there was none."""
-        return self.best_error if math.isfinite(self.best_error) else math.inf
 
     @property
     def went_wrong(self) -> bool:
         """Whether it ended far worse than was foreseen, and than anybody would not notice."""
         config, task = self.config.loop, self.task
         fine = config.again_unnoticed * task.objective.good
-        return self.comparable_error > config.went_wrong * max(task.foreseen, fine)
+        return _comparable_error(self) > config.went_wrong * max(task.foreseen, fine)
 
     def fit(self) -> None:
         """Do all steps, and keep the weights with the best held-out error."""
@@ -127,6 +157,11 @@ class _Run:
                 break
         if self.went_wrong:
             self._tell("fit", self.task.schedule.steps, self.best_error, 0.0, self._wrong())
+
+    def take(self, fitted: Network) -> None:
+        """Have the weights of a network that was fitted before."""
+        self.best = self.layout.vector(fitted.tensors)
+        self.best_error = self.error = self._error(self.best)
 
     def network(self) -> Network:
         """The best weights, rounded if the task says how. Raises FitError if they are useless."""

@@ -9,6 +9,8 @@ import time
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 
+import numpy as np
+
 from nispcodec.core.errors import FitError
 from nispcodec.core.network import Network
 from nispcodec.core.progress import Listener, Progress
@@ -27,6 +29,9 @@ def fit(task: Task, seed: int, engine: Engine, core: Core, listen: Listener) -> 
     """
     if task.pruning is None:
         return train(task, seed, engine, core, listen)
+    if task.fitted is not None:
+        mask = {name: np.asarray(tensor != 0) for name, tensor in task.fitted.tensors.items()}
+        return train(task, seed, engine, core, listen, mask)
     rates = task.pruning.rates
     heard = _rounds(listen, len(rates) + 1)
 

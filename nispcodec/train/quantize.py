@@ -25,7 +25,6 @@ from nispcodec.train.layout import WeightLayout, four_bits
 from nispcodec.train.task import Quantization, Task
 from nispcodec.train.triangle import Triangle
 
-GAUSSIAN_BITS = 0.5 * math.log2(2 * math.pi * math.e)
 TINY = 1e-30
 
 
@@ -212,11 +211,8 @@ def _grid(
     counts = np.bincount(rows, minlength=count).astype(np.float64)
     total = np.bincount(rows, stiffness, minlength=count)
     allowed = quantization.lambda_ / (2 * math.log(2))
-    steps = np.sqrt(24 * allowed / len(order) * counts / (total + TINY))
+    steps = np.sqrt(24 * allowed / len(order) * counts / (total + TINY)) * 2**quantization.coarser
     steps = steps.clip(config.finest, config.coarsest)
-    if quantization.bit_budget:
-        steps *= 2 ** _finer(unrounded, order, steps, quantization.bit_budget)
-        steps = steps.clip(config.finest, config.coarsest)
     held = []
     for scale, found in zip(layout.scales.values(), layout.rows_of_tensors, strict=True):
         step, row_shifts = shared_step(
@@ -253,28 +249,3 @@ def shared_step(
                 best = float(bits), step, row_shifts
     assert best is not None
     return best[1:]
-
-
-def _finer(unrounded: Unrounded, order: IndexArray, steps: Float64Array, budget: float) -> float:
-    """How many octaves coarser (below 0: finer) `steps` of rows make weights fit into a budget.
-
-    In bits, of all weights: n symbols of a tensor, of power p less what initial weights predict,
-    take n softplus(2 x) / 2 bits, x = log2(sqrt(p)) + `GAUSSIAN_BITS`: a Gaussian's entropy, kept
-    above 0.
-    """
-    layout, config = unrounded.layout, unrounded.task.config.quantize
-    tensors, grid = layout.tensors[order], steps[layout.rows[order]]
-    weights, first = (
-        each[order].astype(np.float64) for each in (unrounded.weights, unrounded.first)
-    )
-    share = np.bincount(tensors, weights * first) / (np.bincount(tensors, first**2) + TINY)
-    counts = np.bincount(tensors).astype(np.float64)
-    power = np.bincount(tensors, np.square((weights - share[tensors] * first) / grid))
-    budget -= config.header_bits * len(counts)
-    excess = np.log2(np.maximum(power / np.maximum(counts, 1), TINY)) + 2 * GAUSSIAN_BITS
-    low, high = -config.budget_range, config.budget_range
-    while high - low > config.budget_tolerance:
-        middle = (low + high) / 2
-        bits = float(counts @ np.logaddexp(0, excess - 2 * middle)) / 2
-        low, high = (middle, high) if bits > budget else (low, middle)
-    return high

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, field
 
-from nispcodec.core.network import NetworkSpec
+from nispcodec.core.network import Network, NetworkSpec
 from nispcodec.core.sample_set import SampleSet
 from nispcodec.train.config import TrainConfig
 from nispcodec.train.objectives import Objective
@@ -19,13 +19,14 @@ class Quantization:
     lambda_     how much a bit a weight less may raise the loss, as the objective's curvature has
                 it; where that is the loss' own, a share of what the fit is left with: so every
                 asset has a lambda of its own
-    bit_budget  bits that all weights together take; 0: as lambda says
+    coarser     octaves by which all steps are longer than lambda has them: a bit less of every
+                weight, so that what they cost stays alike everywhere
     rise        times the held-out error that it may cost before it is tried again, if that is more
                 than `QuantizeConfig` says
     """
 
     lambda_: float
-    bit_budget: float = 0.0
+    coarser: float = 0.0
     rise: float = 1.0
 
 
@@ -57,8 +58,10 @@ class Schedule:
 class Task:
     """Fit `spec` to `samples` by an objective, whose error on `held_out` says how good it is.
 
-    Without `quantization` the weights stay float32. `foreseen` is the held-out error that a fit of
-    this task should end below; infinite where nobody knows.
+    Without `quantization` the weights stay float32. `fitted` is the network of an earlier fit of
+    this task, which is only to be rounded; None: none is. `foreseen` is the held-out error that a
+    fit of this task should end below; infinite where nobody knows. `starts` fits are made from as
+    many initial weights, and the best is kept.
     """
 
     name: str
@@ -69,7 +72,9 @@ class Task:
     schedule: Schedule
     quantization: Quantization | None = None
     pruning: Pruning | None = None
+    fitted: Network | None = None
     foreseen: float = math.inf
+    starts: int = 1
     config: TrainConfig = field(default_factory=TrainConfig)
 
     @property

@@ -79,12 +79,10 @@ def sine_tasks(
     hidden: Hidden,
     budget: TrainingBudget,
     errors: Mapping[str, float],
-    bit_budgets: Mapping[str, float],
 ) -> list[Task]:
     """Small sine networks with rounded weights, most of the capacity near the surface.
 
-    errors       held-out errors of the probes, by name
-    bit_budgets  for each network; without one lambda decides
+    errors: held-out errors of the probes, by name.
     """
     config = problem.config
     fine = is_fine(errors, config.sizing)
@@ -93,18 +91,20 @@ def sine_tasks(
     tasks = []
     for name, spec in problem.specs(hidden).items():
         learning = config.networks[name]
-        steps = max(1, round(most * learning.step_share))
+        # Large networks gain by every step, others by another start.
+        starts = budget.starts if name == "sdf" and not fine else 1
+        steps = max(1, round(most * learning.step_share / starts))
         schedule = _schedule(name, steps, budget.w0_scale, config)
         if name == "sdf":
             rate = config.fine_rate if fine else learning.learning_rate
             minings = max(budget.minings, steps // budget.mine_every)
             schedule = replace(schedule, rate=rate, minings=minings)
-        quantization = Quantization(learning.lambda_, bit_budgets.get(name, 0.0), budget.rounding)
+        quantization = Quantization(learning.lambda_, rise=budget.rounding)
         task = _task(sets, name, spec, schedule, config)
         expected = math.inf
         if steps > config.loop.least_to_judge * config.probe_steps:
             expected = foreseen(errors[name], learning.probe_hidden, spec.hidden)
-        tasks.append(replace(task, quantization=quantization, foreseen=expected))
+        tasks.append(replace(task, quantization=quantization, foreseen=expected, starts=starts))
     return tasks
 
 

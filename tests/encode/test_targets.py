@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 import pytest
@@ -141,21 +141,62 @@ def test_networks_that_are_not_wanted_are_not_fitted() -> None:
     assert told[1][0] == 3000
 
 
-def test_a_file_that_is_too_large_is_rounded_more_coarsely() -> None:
-    """Its bytes are the more, the more bits its network may have."""
-    asked: list[float] = []
+@dataclass
+class Law:
+    """Fits whose files have the fewer bytes, the more coarsely they are rounded."""
 
-    def bulky(tasks: list[Task], listen: Listener) -> Networks:
+    bytes: float
+    per_octave: float = 400.0
+    asked: list[float] = field(default_factory=list)
+    fits: int = 0
+
+    def fit(self, tasks: list[Task], listen: Listener) -> Networks:
         for task in tasks:
-            asked.extend([task.quantization.bit_budget] if task.quantization else [])
+            if task.fitted is not None and task.quantization is not None:
+                self.asked.append(task.quantization.coarser)
+            else:
+                self.fits += 1
         return by_law(tasks, listen)
 
-    def growing(networks: Mapping[str, Network]) -> Document:
-        count = round(asked[-1] / 8 / 3) if asked else 0
-        info = {str(key): value for key, value in enumerate(np.random.default_rng(0).random(count))}
+    def document(self, networks: Mapping[str, Network]) -> Document:
+        size = self.bytes - self.per_octave * self.asked[-1] if self.asked else 0.0
+        count = max(round((size - len(pack(document(networks)))) / 10), 0)
+        random = np.random.default_rng(0).random(count).tolist()
+        info = {str(number): value for number, value in enumerate(random)}
         return replace(document(networks), info=info)
 
-    networks = fit_to_size(fitting(bulky), 3000, growing)
-    assert len(pack(growing(networks))) <= 3000
-    assert asked == sorted(asked, reverse=True)
-    assert len(asked) > 1
+
+@pytest.mark.parametrize("size", [2000.0, 3300.0, 4500.0])
+@pytest.mark.parametrize("per_octave", [100.0, 400.0, 1000.0])
+def test_networks_are_fitted_once_and_rounded_until_they_fill_the_size(
+    size: float, per_octave: float
+) -> None:
+    law = Law(size, per_octave)
+    networks = fit_to_size(fitting(law.fit), 3000, law.document)
+    found = len(pack(law.document(networks)))
+    assert 0.9 * 3000 < found <= 3000
+    assert law.fits == 2  # the probe's and the fit's
+    assert len(law.asked) <= TargetConfig.roundings
+
+
+def test_networks_that_no_rounding_makes_small_enough_are_refused() -> None:
+    law = Law(9000.0, per_octave=0.0)
+    with pytest.raises(TargetSizeError, match=r"target size: expected at least \d,\d{3} bytes"):
+        fit_to_size(fitting(law.fit), 3000, law.document)
+    assert len(law.asked) == TargetConfig.roundings
+
+
+@pytest.mark.slow
+def test_a_network_that_was_fitted_before_is_only_rounded() -> None:
+    context = fitting(really)
+    (task,) = context.tasks({"sdf": (8,) * 4}, context.probed)
+    plain = replace(task, quantization=None)
+    before = really([plain], silent)["sdf"]
+    told: list[str] = []
+    again = fit_networks(
+        [replace(task, fitted=before)], 0, ENGINE, 2, lambda update: told.append(update.stage)
+    )["sdf"]
+    assert set(told) == {"quantize"}
+    assert again.spec == before.spec
+    off = np.abs(again.tensors["weight.1"] - before.tensors["weight.1"])
+    assert 0 < off.max() < again.steps["weight.1"] * 16
