@@ -12,7 +12,7 @@ from nispcodec.core.connectivity import edge_ids, row_ids
 from nispcodec.core.creases import sharp_sides
 
 REACH = 1e-6
-"""Of the radius: what float32 leaves between borders that are one, and far less than a grid has."""
+"""Share of the radius: what float32 leaves between borders that are one, far less than a step."""
 
 
 def met(mesh: TexturedMesh, radius: float, silent: BoolArray) -> TexturedMesh:
