@@ -27,7 +27,7 @@ UV_SIGNS = ((1.0, 1.0), (-1.0, 1.0), (1.0, -1.0))
 
 
 def with_halves(copies: Copies, planes: Sequence[Mirror], config: CopiesConfig) -> Copies | None:
-    """Of the faces that have no copies those with a mirror image in one of the planes held once.
+    """Hold once the faces, of those that have no copies, that have a mirror image in a plane.
 
     By the plane with the most of them; None where that is too few to be worth a part of its own.
     """
