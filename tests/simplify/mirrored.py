@@ -5,14 +5,22 @@ from __future__ import annotations
 import numpy as np
 
 from nispcodec.core.arrays import Float64Array
+from nispcodec.core.asset import Material
+from nispcodec.core.document import Document
 from nispcodec.core.mesh_part import MeshPart
+from nispcodec.model import NispModel
+from nispcodec.simplify.config import CopiesConfig
 from nispcodec.simplify.copies import Copies
+from nispcodec.simplify.halves import with_halves
+from nispcodec.simplify.mirror import Mirror, planes_of
 from nispcodec.simplify.quantize import Grid
 from nispcodec.simplify.triangles import Triangles
 from tests.geometry import shapes
-from tests.simplify.meshes import triangles_of
+from tests.simplify.meshes import UNIT, triangles_of
 
 BITS = 12
+CONFIG = CopiesConfig(fewest=20)
+PLANES = planes_of(np.zeros(3))
 
 
 def half(rows: int = 12) -> Float64Array:
@@ -45,3 +53,11 @@ def body(axis: int = 0, at: float = 0.0) -> Triangles:
 def parts_of(copies: Copies) -> tuple[MeshPart, ...]:
     triangles = copies.triangles
     return copies.parts(triangles, Grid.of(triangles.positions, BITS), Grid.of(triangles.uvs, BITS))
+
+
+def halved(triangles: Triangles, *planes: Mirror) -> Copies | None:
+    return with_halves(Copies.none(triangles), planes or PLANES, CONFIG)
+
+
+def model_of(parts: tuple[MeshPart, ...]) -> NispModel:
+    return NispModel(Document(UNIT, (Material(),), (), meshes=parts))

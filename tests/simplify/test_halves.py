@@ -9,37 +9,22 @@ import pytest
 from scipy.spatial import cKDTree
 
 from nispcodec.core.arrays import Float64Array
-from nispcodec.core.asset import Material, TexturedMesh
+from nispcodec.core.asset import TexturedMesh
 from nispcodec.core.connectivity import edge_ids, row_ids
-from nispcodec.core.creases import fan_normals
-from nispcodec.core.document import Document
-from nispcodec.core.mesh_part import MeshPart
-from nispcodec.model import NispModel
 from nispcodec.simplify.config import CopiesConfig
 from nispcodec.simplify.copies import Copies
 from nispcodec.simplify.halves import with_halves
-from nispcodec.simplify.mirror import Mirror, planes_of
-from nispcodec.simplify.triangles import Triangles, joined
+from nispcodec.simplify.mirror import planes_of
+from nispcodec.simplify.triangles import joined
 from tests.geometry import shapes
-from tests.simplify.meshes import UNIT, simplifier, triangles_of
-from tests.simplify.mirrored import BITS, body, both_halves, parts_of
-
-CONFIG = CopiesConfig(fewest=20)
-PLANES = planes_of(np.zeros(3))
-
-
-def halved(triangles: Triangles, *planes: Mirror) -> Copies | None:
-    return with_halves(Copies.none(triangles), planes or PLANES, CONFIG)
+from tests.simplify.meshes import simplifier, triangles_of
+from tests.simplify.mirrored import BITS, PLANES, body, halved, model_of, parts_of
 
 
 def sizes(copies: Copies | None) -> list[tuple[int, int]]:
     """The faces of each group, and its placements."""
     assert copies is not None
     return [(len(home), len(group.placements)) for group, home in copies.homes]
-
-
-def model_of(parts: tuple[MeshPart, ...]) -> NispModel:
-    return NispModel(Document(UNIT, (Material(),), (), meshes=parts))
 
 
 @pytest.mark.parametrize("axis", [0, 1, 2])
@@ -146,31 +131,3 @@ def test_all_faces_take_fewer_bytes_and_fewer_faces_are_as_before() -> None:
     assert ours.candidate(few, 11, 11).size == plain.candidate(few, 11, 11).size
     near, usual = (each.candidate(every, 11, 11).errors for each in (ours, plain))
     assert near.distance < 1.3 * usual.distance
-
-
-def test_shading_goes_on_over_the_cut() -> None:
-    whole = body()
-    copies = halved(whole)
-    assert copies is not None
-    mesh = model_of(parts_of(copies)).to_mesh()
-    assert mesh.creases is not None
-    rows, fans = fan_normals(row_ids(mesh.positions)[mesh.faces], mesh.corners, mesh.creases)
-    on_plane = np.abs(mesh.corners[..., 0]) < 1e-6
-    assert on_plane.sum() > 20
-    # Both halves have one normal there, which lies in the plane.
-    assert np.abs(rows[fans][on_plane][:, 0]).max() < 1e-6
-
-
-def test_shading_breaks_over_a_cut_that_turns_sharply() -> None:
-    # A roof, whose ridge is in the plane.
-    flat = (shapes.grid(8) + np.array([1, 0, 0])) / 2
-    corners = both_halves(flat - flat[..., :1] * [0, 0, 1])
-    bent, uvs = corners * 0.7, np.abs(corners[..., :2])
-    copies = halved(triangles_of(shapes.soup(bent, uvs)))
-    assert copies is not None
-    mesh = model_of(parts_of(copies)).to_mesh()
-    assert mesh.creases is not None
-    rows, fans = fan_normals(row_ids(mesh.positions)[mesh.faces], mesh.corners, mesh.creases)
-    ridge = np.abs(mesh.corners[..., 0]) < 1e-6
-    assert ridge.sum() > 10
-    assert np.abs(rows[fans][ridge][:, 0]) == pytest.approx(np.sqrt(0.5), abs=0.02)
