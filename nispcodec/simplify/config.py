@@ -58,6 +58,8 @@ class FitConfig:
     halvings     of a move that turns faces over, before all of it is taken back
     far          times the mean distance before the fit that a vertex may be from the source: where
                  nearly no point speaks for one, least squares may send it anywhere
+    least_far    how far it may be for all that, normalized frame: where faces are flat and large,
+                 means are tiny, and single corners have to move by a hundred times as much
     reach        how far it may be at most, normalized frame: unbounded where means of distances are
                  what counts, as single spikes make few triangles nearer on the mean
     """
@@ -78,6 +80,7 @@ class FitConfig:
     turn: float = 0.3
     halvings: int = 3
     far: float = 10.0
+    least_far: float = 0.01
     reach: float = math.inf
     solver: SolverConfig = SolverConfig()
 

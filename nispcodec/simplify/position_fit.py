@@ -33,7 +33,7 @@ def fitted_positions(
     rng = np.random.default_rng([seed, 0])
     fit = _Fit.of(source, triangles, config, rng)
     positions = triangles.positions
-    reach = min(config.reach, config.far * fit.missed(positions))
+    reach = min(config.reach, max(config.far * fit.missed(positions), config.least_far))
     for _ in range(config.rounds):
         pulls = list(fit.pulls(positions, rng))
         moved = pulled(positions, pulls, config.damping, config.solver)

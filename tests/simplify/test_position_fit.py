@@ -45,8 +45,8 @@ def test_no_vertex_is_sent_far_away() -> None:
     source = Source(ball())
     fewer = collapsed(source.triangles, 40)
     most = 0.5 * distance(source, fewer)
-    for far, within in ((0.5, True), (np.inf, False)):
-        moved = fitted_positions(source, fewer, replace(SMALL_FIT, far=far))
+    for far, least, within in ((0.5, 0.0, True), (0.5, 10.0, False), (np.inf, 0.0, False)):
+        moved = fitted_positions(source, fewer, replace(SMALL_FIT, far=far, least_far=least))
         assert bool(_off(source, moved).max() <= 1.1 * most) is within
 
 
