@@ -11,6 +11,7 @@ import numpy as np
 
 from nispcodec.core.arrays import Float32Array, Float64Array, FloatArray
 from nispcodec.core.errors import FitError
+from nispcodec.core.memory import give_back
 from nispcodec.core.network import MAX_INIT_SEED, Network
 from nispcodec.core.progress import Listener, Progress
 from nispcodec.train.backend.protocol import Engine
@@ -166,6 +167,9 @@ class _Run:
     def network(self) -> Network:
         """The best weights, rounded if the task says how. Raises FitError if they are useless."""
         self._expect_useful()
+        # What only the fit needed is free for the rounding, which takes as much.
+        self.error_radii = None
+        give_back()
         with self.core():
             return self._network()
 
