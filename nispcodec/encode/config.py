@@ -132,7 +132,8 @@ class FormConfig:
 
     growth           of the faces from one candidate to the next
     bytes_per_face   that candidates typically take: which are looked at first
-    estimate_trials  candidates that an estimate looks at
+    estimate_trials  candidates that an estimate looks at ...
+    fast_trials      ... and with the preset `fast`
     far_nearer       times nearer than asked from which on a candidate says no more of how many
                      faces that takes
     bytes_slope      of the bytes by the distance, both as logarithms, as typical
@@ -193,6 +194,7 @@ class FormConfig:
     growth: float = 1.8
     bytes_per_face: float = 2.0
     estimate_trials: int = 4
+    fast_trials: int = 2
     far_nearer: float = 4.0
     bytes_slope: float = 0.75
     least_bytes_per_face: float = 1.0
@@ -341,6 +343,11 @@ class Tuning:
     def geometry_of(self, preset: str) -> GeometryConfig:
         """The preset `paper` knows neither cut nor merged charts."""
         return replace(self.geometry, merging=None) if preset == "paper" else self.geometry
+
+    def forms_of(self, preset: str) -> FormConfig:
+        """The preset `fast` has time to look at fewer triangles before its networks are fitted."""
+        forms = self.forms
+        return replace(forms, estimate_trials=forms.fast_trials) if preset == "fast" else forms
 
     def sampling_of(self, preset: str) -> SamplingConfig:
         """The share of the samples that the preset has time to look at."""

@@ -68,7 +68,7 @@ def _encoded(
     for warning in analysis.solid.warnings:
         progress(Progress(stage="charts and hidden walls", warning=f"{mesh.name}: {warning}"))
     frame = short_frame(analysis.frame, tuning.negligible)
-    form = MeshForm(analysis, config.seed, tuning.forms, progress)
+    form = MeshForm(analysis, config.seed, tuning.forms_of(config.preset), progress)
     field = FieldForm(analysis, config, tuning, engine, progress)
 
     def document(held: Field | None = None, parts: tuple[MeshPart, ...] = ()) -> Document:
