@@ -37,9 +37,9 @@ from benchmarks.measuring.target import Asked, Target, asked_of_each
 from nispcodec.core.asset import Texture, TexturedMesh
 from nispcodec.core.texture import encoded_texture
 from nispcodec.encode.compact_images import CompactImage, compact_images
-from nispcodec.encode.config import TotalConfig
 from nispcodec.encode.image_shares import ImageShares
 from nispcodec.encode.total import Pictures
+from nispcodec.encode.total_config import TotalConfig
 from nispcodec.metrics.psnr import psnr
 from nispcodec.render.remembered import RememberedScene
 from nispcodec.render.views import scene_of

@@ -9,7 +9,8 @@ from nispcodec.core.progress import Listener, Progress
 from nispcodec.core.texture import data_maps, reencode
 from nispcodec.edit.texture_padding import with_padded_textures
 from nispcodec.encode.compact_images import compact_textures
-from nispcodec.encode.config import CompactConfig, EncodeConfig
+from nispcodec.encode.config import EncodeConfig
+from nispcodec.encode.total_config import CompactConfig
 
 
 def appearance(

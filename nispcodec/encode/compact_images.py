@@ -15,7 +15,7 @@ from nispcodec.core.texture import (
     named_apart,
 )
 from nispcodec.edit.texture_padding import used_texels
-from nispcodec.encode.config import CompactConfig
+from nispcodec.encode.total_config import CompactConfig
 
 LEAST, MOST = 1, 100
 """Quality of an image."""

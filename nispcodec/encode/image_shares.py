@@ -12,7 +12,7 @@ from nispcodec.core.arrays import Float64Array
 from nispcodec.core.asset import Texture
 from nispcodec.core.texture import named_apart
 from nispcodec.encode.compact_images import LEAST, MOST, CompactImage
-from nispcodec.encode.config import CompactConfig
+from nispcodec.encode.total_config import CompactConfig
 
 QUALITIES = np.arange(LEAST, MOST + 1)
 NOTHING = 1e-12

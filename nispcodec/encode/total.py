@@ -17,9 +17,10 @@ from nispcodec.core.network import NetworkSpec
 from nispcodec.core.progress import Listener, Progress, silent
 from nispcodec.encode.choice import Loss
 from nispcodec.encode.compact_images import compact_images
-from nispcodec.encode.config import EncodeConfig, TotalConfig
+from nispcodec.encode.config import EncodeConfig
 from nispcodec.encode.image_shares import ImageShares
 from nispcodec.encode.targets import blank_network
+from nispcodec.encode.total_config import TotalConfig
 from nispcodec.format import own_bytes, pack
 from nispcodec.metrics.psnr import psnr
 from nispcodec.model import NispModel

@@ -10,7 +10,8 @@ from nispcodec.core.progress import Progress, silent
 from nispcodec.core.texture import image_bytes
 from nispcodec.edit.texture_padding import with_padded_textures
 from nispcodec.encode.appearance import appearance
-from nispcodec.encode.config import CompactConfig, EncodeConfig
+from nispcodec.encode.config import EncodeConfig
+from nispcodec.encode.total_config import CompactConfig
 from tests.edit.test_texture_padding import GRAY, atlas
 
 

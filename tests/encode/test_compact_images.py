@@ -9,7 +9,7 @@ import numpy as np
 from nispcodec.core.asset import Material, Texture, TexturedMesh, TextureMap
 from nispcodec.core.texture import encode_image, image_bytes
 from nispcodec.encode.compact_images import CompactImage, compact_images, compact_textures
-from nispcodec.encode.config import CompactConfig
+from nispcodec.encode.total_config import CompactConfig
 from tests.geometry.shapes import soup
 
 SIDE = 64

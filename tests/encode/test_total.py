@@ -16,9 +16,10 @@ from nispcodec.core.errors import NispError, TargetSizeError
 from nispcodec.core.progress import Listener, Progress, silent
 from nispcodec.core.texture import image_size
 from nispcodec.encode.choice import Loss
-from nispcodec.encode.config import EncodeConfig, TotalConfig
+from nispcodec.encode.config import EncodeConfig
 from nispcodec.encode.recipe import encode
 from nispcodec.encode.total import encode_to_total
+from nispcodec.encode.total_config import TotalConfig
 from nispcodec.format import pack
 from nispcodec.model import NispModel
 from tests import tiny
