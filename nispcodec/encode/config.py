@@ -133,8 +133,7 @@ class FormConfig:
 
     growth           of the faces from one candidate to the next
     bytes_per_face   that candidates typically take: which are looked at first
-    estimate_trials  candidates that an estimate looks at ...
-    fast_trials      ... and with the preset `fast`
+    estimate_trials  candidates that an estimate looks at, where the preset has time for as many
     far_nearer       times nearer than asked from which on a candidate says no more of how many
                      faces that takes
     bytes_slope      of the bytes by the distance, both as logarithms, as typical
@@ -195,7 +194,6 @@ class FormConfig:
     growth: float = 1.8
     bytes_per_face: float = 2.0
     estimate_trials: int = 4
-    fast_trials: int = 2
     far_nearer: float = 4.0
     bytes_slope: float = 0.75
     least_bytes_per_face: float = 1.0
@@ -298,9 +296,10 @@ class Tuning:
         return replace(self.geometry, merging=None) if preset == "paper" else self.geometry
 
     def forms_of(self, preset: str) -> FormConfig:
-        """The preset `fast` has time to look at fewer triangles before its networks are fitted."""
-        forms = self.forms
-        return replace(forms, estimate_trials=forms.fast_trials) if preset == "fast" else forms
+        """With as many looks at triangles as the preset has time for."""
+        budget, forms = self.training.budgets.get(preset), self.forms
+        most = min(forms.estimate_trials, budget.estimates) if budget else forms.estimate_trials
+        return replace(forms, estimate_trials=most)
 
     def sampling_of(self, preset: str) -> SamplingConfig:
         """The share of the samples that the preset has time to look at."""

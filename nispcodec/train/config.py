@@ -284,6 +284,7 @@ class TrainingBudget:
                  is more than `QuantizeConfig` says
     trial        steps of a fit by which networks are set against triangles before they are fitted
                  for good, where the probe leaves that open; 0: none
+    estimates    candidates of triangles that are looked at before networks are fitted
     mesh         mean distance (normalized frame) that triangles in place of the networks may be
                  off: they are not made coarser, however small they would be
     worth        times the networks' bytes that triangles within `mesh` may take, where networks are
@@ -299,6 +300,7 @@ class TrainingBudget:
     rounding: float = 1.0
     trial: int = 0
     starts: int = 1
+    estimates: int = 4
     mesh: float = 6e-4
     worth: float = 1.0
 
@@ -375,7 +377,9 @@ class TrainConfig:
     )
     budgets: Mapping[str, TrainingBudget] = field(
         default_factory=lambda: {
-            "fast": TrainingBudget(9_000, 0.8, 3, 800, 0.7, samples=0.5, rounding=1.25, mesh=1e-3),
+            "fast": TrainingBudget(
+                9_000, 0.8, 3, 800, 0.7, samples=0.5, rounding=1.25, estimates=2, mesh=1e-3
+            ),
             "balanced": TrainingBudget(40_000, 1.0, 9, 2000, trial=8000),
             "best": TrainingBudget(200_000, 1.2, 15, 4000, 0.8, starts=4, mesh=1e-4, worth=3.0),
         }
