@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from nispcodec.core.arrays import BoolArray, Float64Array
+from nispcodec.core.arrays import BoolArray, Float64Array, Int64Array
 from nispcodec.core.connectivity import connected_components
 from nispcodec.core.creases import breaking, face_normals, fan_normals, sharp_sides, side_pairs
 from nispcodec.simplify.closest import Tree, unit
@@ -59,15 +59,15 @@ def written_creases(welded: Triangles, config: CreaseConfig = CreaseConfig()) ->
     turns sharply, one edge that parts nothing says so.
     """
     nothing = np.zeros(welded.faces.shape, np.bool_)
-    bent = bent_creases(welded, config)
-    if welded.creases is None or bent is None:
+    if welded.creases is None:
         return nothing
+    turning = sharp_sides(welded.faces, welded.corners, config.flat)
     # A border has no other side here, but may have one in another part.
     numbers = side_numbers(welded.faces)
     border = np.bincount(numbers.ravel())[numbers] == 1
-    creases = bent | (welded.creases & border)
+    creases = _of_both_sides(welded.faces, welded.creases) & (turning | border)
     differ = ((creases != sharp_sides(welded.faces, welded.corners)) & ~border).sum()
-    if differ <= config.negligible * _bent(welded, config).sum():
+    if differ <= config.negligible * turning.sum():
         return nothing
     return creases if creases.any() else _harmless(welded)
 
@@ -76,14 +76,16 @@ def bent_creases(welded: Triangles, config: CreaseConfig = CreaseConfig()) -> Bo
     """(m, 3): the creases, both sides of an edge alike, of edges that turn; None: nobody said."""
     if welded.creases is None:
         return None
-    mine, other = side_pairs(welded.faces)
-    found = welded.creases.ravel().copy()
+    turning = sharp_sides(welded.faces, welded.corners, config.flat)
+    return _of_both_sides(welded.faces, welded.creases) & turning
+
+
+def _of_both_sides(faces: Int64Array, creases: BoolArray) -> BoolArray:
+    """(m, 3): creases, the other sides of their edges too."""
+    mine, other = side_pairs(faces)
+    found = creases.ravel().copy()
     found[other[found[mine]]] = True
-    return found.reshape(-1, 3) & _bent(welded, config)
-
-
-def _bent(welded: Triangles, config: CreaseConfig) -> BoolArray:
-    return sharp_sides(welded.faces, welded.corners, config.flat)
+    return np.asarray(found.reshape(-1, 3))
 
 
 def _harmless(triangles: Triangles) -> BoolArray:

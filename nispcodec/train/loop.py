@@ -6,6 +6,7 @@ import math
 import time
 from dataclasses import replace
 from itertools import pairwise
+from operator import attrgetter
 
 import numpy as np
 
@@ -43,9 +44,8 @@ def train(
     rates do not help, the best network so far is what there is, and a note says so. A run that
     ended far worse than was foreseen is made again from another seed, unless a `mask`
     ties it to its initial weights; the better of the two stays. So does the best of as many runs as
-    the task has `starts`. At the end the weights are rounded
-    (`nispcodec.train.quantize`), if the task says how. A network that was fitted before is only
-    rounded.
+    the task has `starts`. At the end the weights are rounded (`nispcodec.train.quantize`), if the
+    task says how. A network that was fitted before is only rounded.
     Raises FitError for a network that is far worse than a constant, whose weights cannot be
     rounded, or that the engine does not train.
     """
@@ -53,14 +53,14 @@ def train(
         run = _Run(task, seed, engine, core, listen, mask)
         run.take(task.fitted)
         return run.network()
-    starts = task.starts if mask is None else 1
+    starts, began = task.starts if mask is None else 1, time.monotonic()
     runs = (
-        _fitted(_Run(task, each, engine, core, _part(listen, number, starts), mask))
+        _fitted(_Run(task, each, engine, core, _part(listen, number, starts, began), mask))
         for number, each in enumerate(_seeds(seed, starts))
     )
-    run = min(runs, key=_comparable_error)
+    run = min(runs, key=attrgetter("comparable_error"))
     if mask is None and run.went_wrong:
-        run = min(run, _made_again(run, seed, engine), key=_comparable_error)
+        run = min(run, _made_again(run, seed, engine), key=attrgetter("comparable_error"))
     return run.network()
 
 
@@ -69,19 +69,16 @@ def _seeds(seed: int, count: int) -> list[int]:
     return [seed + number * (MAX_INIT_SEED + 1) // count for number in range(count)]
 
 
-def _part(listen: Listener, number: int, count: int) -> Listener:
-    """A listener to one run of several, which are told as one."""
+def _part(listen: Listener, number: int, count: int, began: float) -> Listener:
+    """A listener to one run of several, which are told as one; rounding comes after all of them."""
 
     def heard(update: Progress) -> None:
-        done = number * update.steps + update.step
-        listen(replace(update, step=done, steps=count * update.steps))
+        steps = count * update.steps
+        done = number * update.steps + update.step if update.stage == "fit" else steps
+        left = (time.monotonic() - began) * (steps - done) / done
+        listen(replace(update, step=done, steps=steps, seconds_left=left))
 
     return heard
-
-
-def _comparable_error(run: _Run) -> float:
-    """The best held-out error; infinite where there was none."""
-    return run.best_error if math.isfinite(run.best_error) else math.inf
 
 
 def _fitted(run: _Run) -> _Run:
@@ -135,11 +132,16 @@ class _Run:
         self.rates = _rates(task.schedule, self.config.loop)
 
     @property
+    def comparable_error(self) -> float:
+        """The best held-out error; infinite where there was none."""
+        return self.best_error if math.isfinite(self.best_error) else math.inf
+
+    @property
     def went_wrong(self) -> bool:
         """Whether it ended far worse than was foreseen, and than anybody would not notice."""
         config, task = self.config.loop, self.task
         fine = config.again_unnoticed * task.objective.good
-        return _comparable_error(self) > config.went_wrong * max(task.foreseen, fine)
+        return self.comparable_error > config.went_wrong * max(task.foreseen, fine)
 
     def fit(self) -> None:
         """Do all steps, and keep the weights with the best held-out error."""
