@@ -24,17 +24,16 @@ export function partsMesh(document) {
   const copies = placedCopies(document);
   if (document.parts.length > 1 || document.parts[0].placements.length > 1) joinBorders(copies);
   const { vertices, sources, normals } = split(copies);
+  const count = sources.length;
+  const mesh = { positions: new Float32Array(3 * count), normals, uvs: new Float32Array(2 * count), charts: new Float32Array(count) };
   const { positions, faces, uvs, uvFaces, charts } = copies;
-  /** @param {(corner: number) => ArrayLike<number>} of a corner's numbers */
-  const all = (of) => Float32Array.from(sources.flatMap((corner) => Array.from(of(corner))));
-  return {
-    positions: all((corner) => positions.subarray(3 * faces[corner], 3 * faces[corner] + 3)),
-    normals,
-    uvs: all((corner) => (uvFaces[corner] < 0 ? [0, 0] : uvs.subarray(2 * uvFaces[corner], 2 * uvFaces[corner] + 2))),
-    charts: all((corner) => [charts[Math.floor(corner / 3)]]),
-    ...byMaterial(document, charts, vertices),
-    dropped: 0,
-  };
+  sources.forEach((corner, i) => {
+    const [place, node] = [3 * faces[corner], 2 * uvFaces[corner]];
+    mesh.positions.set(positions.subarray(place, place + 3), 3 * i);
+    if (node >= 0) mesh.uvs.set(uvs.subarray(node, node + 2), 2 * i);
+    mesh.charts[i] = charts[Math.floor(corner / 3)];
+  });
+  return { ...mesh, ...byMaterial(document, charts, vertices), dropped: 0 };
 }
 
 /** @param {import("../decoder/document.js").Document} document @returns {Copies} */
