@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 import ast
+import re
 import subprocess
 import sys
 from collections.abc import Iterator
+from dataclasses import fields, is_dataclass
+from importlib import import_module
 from pathlib import Path
 
 import pytest
@@ -196,6 +199,18 @@ def test_tuned_numbers_are_in_configs(package: str) -> None:
     }
     wanted = {each for each in STRUCTURAL if each.startswith(f"nispcodec/{package}/")}
     assert found == wanted
+
+
+@pytest.mark.parametrize(
+    "package", ["geometry", "dataset", "simplify", "train", "encode", "extract"]
+)
+def test_a_config_says_what_each_of_its_numbers_is(package: str) -> None:
+    config = import_module(f"nispcodec.{package}.config")
+    for name, each in vars(config).items():
+        if not is_dataclass(each) or each.__module__ != config.__name__:
+            continue
+        numbers = {at.name for at in fields(each) if "Config" not in str(at.type)}
+        assert numbers <= set(re.findall(r"\w+", each.__doc__ or "")), name
 
 
 def test_array_types_have_names_in_one_place() -> None:

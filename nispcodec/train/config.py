@@ -66,10 +66,6 @@ class MuonConfig:
     most: float = 400.0
     quintic: tuple[float, float, float] = (3.4445, -4.7750, 2.0315)
     rounds: int = 5
-    aim: float = 0.995
-    enough: float = 0.985
-    farthest: float = 32.0
-    roundings: int = 8
 
 
 @dataclass(frozen=True)
@@ -309,7 +305,11 @@ class TrainingBudget:
 class PaperConfig:
     """The published networks and rates (paper, sections 3.2 and 4.1).
 
-    steps   what twenty minutes on two cores allow of 2000 epochs of 10^6 samples
+    hidden          widths of the hidden layers of every network
+    levels          of the Fourier features of points
+    steps           what twenty minutes on two cores allow of 2000 epochs of 10^6 samples
+    batch           samples a step
+    sdf_rate, rate  of Adam, for the SDF and for the others
     """
 
     hidden: tuple[int, ...] = (64,) * 8
@@ -357,6 +357,7 @@ class TrainConfig:
     embedding    numbers a chart that the UV network sees
     affine_ridge variance below which a direction decides nothing in the first chart-affine maps
     probe_steps, probe_w0_scale   of the probes
+    networks, budgets  how each network learns, and what each preset may spend
     """
 
     loss: LossConfig = field(default_factory=LossConfig)
