@@ -117,7 +117,7 @@ def table(records: dict[str, Record]) -> str:
         if "failure" in record:
             lines.append(f"{asset:<18}FAILED: {record['failure']}")
             continue
-        lines += [target.line(asset, record) for target in targets(asset)]
+        lines += [Asked(asset, target, record).line() for target in targets(asset)]
     return "\n".join(lines)
 
 

@@ -14,7 +14,7 @@ from benchmarks.measuring.process import run
 from benchmarks.measuring.result_file import Record
 from benchmarks.measuring.target import Target
 
-RECORD = {
+RECORD: Record = {
     "encode": {"seconds": 100.0, "peak_bytes": 10**9},
     "bytes": {"geometry_uv": 50_000},
     "made_up_share": 0.0,
@@ -62,6 +62,16 @@ def test_table_marks_what_is_missed_and_what_failed() -> None:
     assert ["bytes" in missed[0], "accuracy" in missed[1], len(missed)] == [True, True, 2]
     assert lines[-1].startswith("bad")
     assert "FAILED: RuntimeError: no" in lines[-1]
+
+
+def test_an_asset_without_uvs_has_no_uv_error() -> None:
+    metrics = {name: each for name, each in RECORD["metrics"].items() if name != "uv"}
+    (line,) = (
+        each
+        for each in table({"bare": {**RECORD, "metrics": metrics}}).splitlines()
+        if "UV error" in each
+    )
+    assert line.endswith("not measured")
 
 
 def test_one_failure_does_not_stop_the_rest_and_results_are_kept(
