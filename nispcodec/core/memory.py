@@ -10,7 +10,11 @@ from nispcodec.core.progress import Listener, Progress
 
 
 def freeing(listen: Listener) -> Listener:
-    """A listener that gives memory back when a stage of the whole encode begins, and passes on."""
+    """A listener that gives memory back when a stage of the whole encode begins, and passes on.
+
+    Frees at once what is only held by itself, as an encode before may have left; not at each stage,
+    as looking for it takes a twentieth of a second, and longer in a large process.
+    """
     last = ""
 
     def told(update: Progress) -> None:
@@ -20,15 +24,15 @@ def freeing(listen: Listener) -> Listener:
             give_back()
         listen(update)
 
+    gc.collect()
     return told
 
 
 def give_back() -> None:
-    """Free what is only held by itself, and have the C library return what it keeps for later.
+    """Have the C library return what was freed and it keeps for later.
 
     glibc keeps arrays of up to 32 MB that were freed, as many as there were: half a gigabyte.
     """
-    gc.collect()
     if sys.platform == "linux":
         # Other C libraries of Linux have no such function, and keep less.
         trim = getattr(ctypes.CDLL(None), "malloc_trim", None)

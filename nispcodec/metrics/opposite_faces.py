@@ -17,11 +17,11 @@ def opposite_faces(positions: Float64Array, faces: IntArray, normals: Float64Arr
     positions (n, 3), the corners (m, 3) and unit normals (m, 3) of faces; positions are compared by
     value.
     """
-    codes = np.sort(_codes(positions)[faces], axis=1)
-    order = np.lexsort(codes.T)
-    first, second = order[:-1], order[1:]
-    same = (codes[first] == codes[second]).all(axis=1)
-    first, second = first[same], second[same]
+    # Corners in any order have the same sum.
+    codes = _codes(positions)[faces].sum(axis=1)
+    order = np.argsort(codes, kind="stable")
+    same = codes[order[:-1]] == codes[order[1:]]
+    first, second = order[:-1][same], order[1:][same]
     opposite = (normals[first] * normals[second]).sum(axis=1) < 0
     found = np.full(len(faces), -1, np.int64)
     found[first[opposite]], found[second[opposite]] = second[opposite], first[opposite]

@@ -2,8 +2,11 @@ from __future__ import annotations
 
 import weakref
 
+import pytest
+
+from nispcodec.core import memory
 from nispcodec.core.memory import freeing
-from nispcodec.core.progress import Progress
+from nispcodec.core.progress import Progress, silent
 
 
 class Held:
@@ -13,15 +16,25 @@ class Held:
         self.held = self
 
 
-def test_a_new_stage_frees_what_only_holds_itself() -> None:
+def test_what_only_holds_itself_is_freed_before_the_next_encode() -> None:
+    gone = weakref.ref(Held())
+    assert gone() is not None
+    freeing(silent)
+    assert gone() is None
+
+
+def test_stages_give_memory_back_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    given: list[str] = []
+    monkeypatch.setattr(memory, "give_back", lambda: given.append("stage"))
     heard: list[Progress] = []
     listen = freeing(heard.append)
-    listen(Progress(stage="fit"))
-    gone = weakref.ref(Held())
-    told = [Progress(stage="fit"), Progress(network="sdf", stage="rounding")]
+    told = [
+        Progress(stage="fit"),
+        Progress(stage="fit", step=1),
+        Progress(network="sdf", stage="rounding"),
+        Progress(stage="surface"),
+    ]
     for update in told:
         listen(update)
-    assert gone() is not None
-    listen(Progress(stage="surface"))
-    assert gone() is None
-    assert heard[1:3] == told
+    assert len(given) == 2
+    assert heard == told
