@@ -24,7 +24,8 @@ def settings(source: Source, quick: bool) -> list[Setting]:
     """The presets, and the default one fitted to sizes; quick leaves out what is slow."""
     left_out = {PAPER, SLOW} if quick else {PAPER}
     presets: list[Setting] = [{"preset": name} for name in PRESETS if name not in left_out]
-    sizes: list[Setting] = [{"preset": PRESETS[0], "target_size": size} for size in SIZES]
+    default = nispcodec.EncodeConfig().preset
+    sizes: list[Setting] = [{"preset": default, "target_size": size} for size in SIZES]
     return presets if quick else presets + sizes
 
 

@@ -180,7 +180,10 @@ def test_the_paper_s_preset_runs_only_when_asked_for(source: Source) -> None:
 
 
 def test_our_curve_has_the_points_that_a_delta_rate_wants(source: Source) -> None:
-    assert len(codec("nisp").settings(source, quick=False)) >= LEAST_POINTS
+    settings = codec("nisp").settings(source, quick=False)
+    assert len(settings) >= LEAST_POINTS
+    sized = {setting["preset"] for setting in settings if "target_size" in setting}
+    assert sized == {EncodeConfig().preset}
 
 
 @pytest.mark.parametrize("name", ["nisp", "nisp_paper"])
