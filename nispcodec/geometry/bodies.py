@@ -22,10 +22,9 @@ from nispcodec.core.connectivity import (
     row_ids,
 )
 from nispcodec.geometry.config import SolidConfig
-from nispcodec.geometry.triangles import apart, area, volumes
+from nispcodec.geometry.pieces import against_neighbors
+from nispcodec.geometry.triangles import TINY, apart, area, bulge, lattice, turn
 from nispcodec.geometry.winding import Winding
-
-TINY = float(np.finfo(np.float64).tiny)
 
 
 @dataclass(frozen=True)
@@ -67,6 +66,7 @@ def find_bodies(
         sheet = _single(places)
     flipped, unclear = _flipped(corners[sheet.faces], sheet, config)
     names = connected_components(*_neighbors(sheet.edge), len(sheet.faces))[1]
+    flipped ^= against_neighbors(corners[sheet.faces], flipped, _open_sides(sheet), names, config)
     flipped ^= _inside_out(turn(corners[sheet.faces], flipped), sheet, flipped, names, config)
     chosen, turned = _chosen(sheet, flipped)
     spare = np.ones(len(corners), dtype=bool)
@@ -82,13 +82,6 @@ def find_bodies(
     rim, loops = _rim(ordered, sheet, names, np.array_equal(ordered, sheet.places))
     sides = 3 * chosen[rim // 3] + rim % 3
     return Bodies(body, turned, spare, two_sided, doubtful, sides, loops, welded)
-
-
-def turn(corners: Float64Array, turned: BoolArray) -> Float64Array:
-    """Faces (m, 3, 3), those `turned` with their last two corners swapped."""
-    if not turned.any():
-        return corners
-    return np.where(turned[:, None, None], corners[:, [0, 2, 1]], corners)
 
 
 def sentences(bodies: Bodies, sizes: Float64Array, sheet: BoolArray) -> tuple[str, ...]:
@@ -189,7 +182,7 @@ def _seams_welded(
     corners: Float64Array, positions: Int64Array, sheet: _Single, config: SolidConfig
 ) -> tuple[Int64Array, int]:
     """The positions, those near each other at rims joined, and how many of these had a gap."""
-    sides = np.flatnonzero(np.bincount(sheet.edge)[sheet.edge] == 1)
+    sides = _open_sides(sheet)
     if not len(sides):
         return positions, 0
     face, corner = np.divmod(sides, 3)
@@ -201,6 +194,11 @@ def _seams_welded(
         return positions, 0
     gaps = np.linalg.norm(spots[pairs[:, 0]] - spots[pairs[:, 1]], axis=1)
     return _joined(positions, name[pairs]), len(np.unique(pairs[gaps > config.gap]))
+
+
+def _open_sides(sheet: _Single) -> Int64Array:
+    """Those of the 3 f sides whose edges are of one face."""
+    return np.flatnonzero(np.bincount(sheet.edge)[sheet.edge] == 1)
 
 
 def _neighbors(edge: Int64Array) -> tuple[Int64Array, Int64Array]:
@@ -230,13 +228,13 @@ def _flipped(
     votes = np.where(wrong, -sizes, sizes) * sheet.surplus / sheet.size
     won = np.bincount(patch, votes) / np.maximum(np.bincount(patch, sizes), TINY)
     wrong ^= asked & (won < 0)[patch]
-    bulge, border = _bulge(turn(corners, wrong), patch), _has_border(sheet, wrong, patch)
-    inward = bulge < np.where(border, -config.bulge, 0.0)
+    held, border = bulge(turn(corners, wrong), patch), _has_border(sheet, wrong, patch)
+    inward = held < np.where(border, -config.bulge, 0.0)
     for name in np.unique(patch[asked & inward[patch]]):
         of_it = patch == name
         if not _is_cavity(corners, of_it, config):
             wrong ^= of_it
-    decided = ~border | (np.abs(bulge) > config.bulge) | (np.abs(won) > config.clear_majority)
+    decided = ~border | (np.abs(held) > config.bulge) | (np.abs(won) > config.clear_majority)
     unclear = asked & ~decided[patch]
     return wrong, unclear & (np.abs(sheet.surplus) == sheet.size)
 
@@ -256,26 +254,27 @@ def _inside_out(
     """
     found = np.zeros(len(corners), dtype=bool)
     border = _has_border(sheet, wrong, body)
-    inward = _bulge(corners, body) < np.where(border, -config.bulge, 0.0)
+    inward = bulge(corners, body) < np.where(border, -config.bulge, 0.0)
     if not inward.any() or len(inward) < 2:
         return found
+    # As they all will be: of two that are inside out, each would take the other away.
+    outward = turn(corners, inward[body])
     for name in np.flatnonzero(inward):
         of_it = body == name
-        number = Winding(*apart(corners[~of_it]), config.winding).at(corners[of_it].mean(axis=1))
-        share = float(np.average(number > 0.5, weights=area(corners[of_it])))
+        share = _share_inside(corners[of_it], outward[~of_it], config)
         if config.crossing < share < 1 - config.crossing:
             found |= of_it
     return found
 
 
-def _bulge(corners: Float64Array, patch: IntArray) -> Float64Array:
-    """Of patches, the volume behind them for their area^1.5; a sphere has 0.09, a plane 0."""
-    sizes, middles = area(corners), corners.mean(axis=1)
-    total = np.maximum(np.bincount(patch, sizes), TINY)
-    center = np.stack([np.bincount(patch, sizes * middles[:, a]) / total for a in range(3)], axis=1)
-    enclosed = np.bincount(patch, volumes(corners - center[patch][:, None]))
-    bulge: Float64Array = enclosed / total**1.5
-    return bulge
+def _share_inside(corners: Float64Array, others: Float64Array, config: SolidConfig) -> float:
+    """The part of the area of faces (k, 3, 3) that lies inside others."""
+    # The middles of a few large faces tell little.
+    rows = int(np.ceil(np.sqrt(config.crossing_points / len(corners))))
+    points = lattice(corners, rows)
+    number = Winding(*apart(others), config.winding).at(points.reshape(-1, 3))
+    inside = (number > 0.5).reshape(points.shape[:2]).mean(axis=1)
+    return float(np.average(inside, weights=area(corners)))
 
 
 def _has_border(sheet: _Single, wrong: BoolArray, patch: IntArray) -> BoolArray:

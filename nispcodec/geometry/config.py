@@ -55,7 +55,12 @@ class SolidConfig:
     bulge             an open patch that holds such a volume, for its area^1.5, has an outside: a
                       sphere holds 0.09, half of one 0.02 to 0.03
     crossing          a body that is inside out is turned where at least such a share of its area
-                      lies inside others, and outside
+                      lies inside others, and outside, ...
+    crossing_points   ... at about so many points of it, at least
+    seam              sides of two bodies whose middles are nearer than this run along one seam:
+                      formats that keep each part in 11 bits leave as much between them, ...
+    seam_share        ... but no farther apart than such a share of the shorter side
+    seam_cosine       ... and with an angle between them of at least such a cosine
     escape            an opening, or the inside of a sheet, from which such a share of rays meets
                       nothing is not closed by other bodies
     leak              the same of a sheet whose rim hangs free ...
@@ -92,6 +97,10 @@ class SolidConfig:
     clear_majority: float = 0.2
     bulge: float = 0.02
     crossing: float = 0.02
+    crossing_points: int = 500
+    seam: float = 1e-3
+    seam_share: float = 0.25
+    seam_cosine: float = 0.95
     escape: float = 0.4
     leak: float = 0.03
     hanging: float = 0.95

@@ -14,11 +14,11 @@ import numpy as np
 
 from nispcodec.core.arrays import BoolArray, Float64Array, Int64Array
 from nispcodec.core.errors import MeshError
-from nispcodec.geometry.bodies import Bodies, find_bodies, sentences, turn
+from nispcodec.geometry.bodies import Bodies, find_bodies, sentences
 from nispcodec.geometry.config import SolidConfig
 from nispcodec.geometry.enclosing import free_faces
 from nispcodec.geometry.reach import reach_of, rim_points, shared_corners
-from nispcodec.geometry.triangles import apart, area, normals
+from nispcodec.geometry.triangles import apart, area, normals, turn
 from nispcodec.geometry.welding import Welding
 from nispcodec.geometry.winding import Winding
 

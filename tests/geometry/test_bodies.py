@@ -75,6 +75,21 @@ def cracked(corners: Float64Array, by: float) -> Float64Array:
     return corners + noise * half[:, None, None] * (np.abs(corners[..., :1]) < 1e-9)
 
 
+def parted(corners: Float64Array, gap: float) -> Float64Array:
+    """The lower half reversed, and so far below the upper one."""
+    lower = corners[:, :, 2].mean(axis=1) < 0
+    return flipped(corners, lower) - gap * lower[:, None, None] * UP
+
+
+def exploded(corners: Float64Array, gap: float) -> Float64Array:
+    """A third of the faces reversed, and every face a little off all others."""
+    noise = np.random.default_rng(1).uniform(-gap, gap, (len(corners), 1, 3))
+    return some(corners, 0.3) + noise
+
+
+BARS = np.concatenate([BOX * [1.6, 0.4, 0.4], BOX * [0.4, 1.4, 0.5]])
+CHAIN = np.concatenate([0.5 * BALL + [x, 0, 0] for x in (-0.5, -0.05, 0.45)])
+
 # Name -> the closed bodies, what is done to them, and what has no inside.
 BROKEN: dict[str, tuple[Float64Array, Callable[[Float64Array], Float64Array], Float64Array]] = {
     "whole": (BALL, lambda c: c, NOTHING),
@@ -114,6 +129,21 @@ BROKEN: dict[str, tuple[Float64Array, Callable[[Float64Array], Float64Array], Fl
         lambda c: flipped(c, np.arange(24) >= 12),
         NOTHING,
     ),
+    "crossing bars of two triangles a wall, one inside out": (
+        BARS,
+        lambda c: flipped(c, np.arange(24) >= 12),
+        NOTHING,
+    ),
+    "crossing bars, both inside out": (BARS, lambda c: c[:, ::-1], NOTHING),
+    "a chain, inside out from the second link on": (
+        CHAIN,
+        lambda c: flipped(c, np.arange(len(c)) >= len(BALL)),
+        NOTHING,
+    ),
+    "halves apart by rounding, one reversed": (BALL, lambda c: parted(c, 1e-5), NOTHING),
+    "halves apart by 12 bits, one reversed": (BALL, lambda c: parted(c, 3e-4), NOTHING),
+    "halves apart, one reversed, over ground": (BALL, lambda c: parted(c, 1e-4), GROUND),
+    "exploded, a third reversed": (BALL, lambda c: exploded(c, 1e-5), NOTHING),
     "a ball of which the lower half is reversed, in a box": (
         np.concatenate([BOX, 0.3 * sphere() + [0.5, 0, 0]]),
         lambda c: flipped(c, (np.arange(len(c)) >= 12) & (c[:, :, 2].mean(axis=1) < 0)),
