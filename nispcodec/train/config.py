@@ -267,7 +267,7 @@ class TrainingBudget:
 
     steps        of the SDF, of all starts; other networks take their share
     starts       fits of an SDF that is not of fine detail, of which the best is kept: a fifth
-                 either way is left to chance, and what is beyond 50,000 steps gains less
+                 either way is left to chance, and what is beyond 70,000 steps gains less
     scale        of all widths
     minings      of hard examples at least; without them parts go missing that are a small share of
                  the area ...
@@ -382,7 +382,7 @@ class TrainConfig:
                 9_000, 0.8, 3, 800, 0.7, samples=0.5, rounding=1.25, estimates=2, mesh=1e-3
             ),
             "balanced": TrainingBudget(40_000, 1.0, 9, 2000, trial=8000),
-            "best": TrainingBudget(200_000, 1.2, 15, 4000, 0.8, starts=4, mesh=1e-4, worth=3.0),
+            "best": TrainingBudget(280_000, 1.2, 15, 4000, 0.8, starts=4, mesh=1e-4, worth=3.0),
         }
     )
     batch: int = 1024
