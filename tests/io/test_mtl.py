@@ -366,6 +366,12 @@ def test_accents_of_materials_are_composed_either_way(
     assert mesh.warnings == ()
 
 
+def test_a_backslash_ends_a_path_and_goes_on_in_no_line(tmp_path: Path) -> None:
+    mesh = load(tmp_path, "map_Bump C:\\tex\\\nKd 0 1 0\n")
+    assert mesh.materials[0].base_color[:3] == (0.0, 1.0, 0.0)
+    assert mesh.warnings == ("a.mtl:2: 'C:\\\\tex\\\\': image not found",)
+
+
 def test_words_that_are_no_options_take_no_time(tmp_path: Path) -> None:
     mesh = load(tmp_path, "map_Kd " + "-x " * 50_000 + "w.png\n", w_png=image())
     assert len(mesh.warnings) < 20

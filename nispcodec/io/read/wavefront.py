@@ -36,12 +36,13 @@ WIDE_MARKS = (codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)
 
 
 def logical_lines(data: bytes) -> Iterator[tuple[int, bytes]]:
-    """(number, line) without comments and blank lines; a line ending in a backslash goes on.
+    """(number, line) without comments and blank lines, of a format without continued lines.
 
-    A line that was continued has the number of its first part. A statement that ends in a name
-    keeps what follows "#": whether that is a comment only `names` can tell.
+    A statement that ends in a name keeps what follows "#": whether that is a comment only `names`
+    can tell.
     """
-    return joined(_normal(data).split(b"\n"), 1)
+    lines = map(_bare, _normal(data).split(b"\n"))
+    return ((number, line) for number, line in enumerate(lines, 1) if line)
 
 
 def runs(data: bytes) -> Iterator[tuple[int, bytes, list[bytes]]]:
@@ -66,11 +67,13 @@ def runs(data: bytes) -> Iterator[tuple[int, bytes, list[bytes]]]:
 
 
 def joined(lines: Sequence[bytes], number: int) -> Iterator[tuple[int, bytes]]:
-    """As `logical_lines`, of lines of a file of which the first has a `number`."""
+    """As `logical_lines`, of lines of an OBJ file of which the first has a `number`.
+
+    A line ending in a backslash goes on in the next, and has the number of its first part.
+    """
     parts: list[bytes] = []
     for place, raw in enumerate([*lines, b""], number):
-        commented = b"#" in raw and not _NAMING.match(raw)
-        line = (_COMMENT.sub(b"", raw) if commented else raw).strip()
+        line = _bare(raw)
         if line.endswith(b"\\"):
             parts.append(line[:-1])
             continue
@@ -80,6 +83,12 @@ def joined(lines: Sequence[bytes], number: int) -> Iterator[tuple[int, bytes]]:
             parts = []
         if line:
             yield first, line
+
+
+def _bare(raw: bytes) -> bytes:
+    """The line without its comment and the spaces around it."""
+    commented = b"#" in raw and not _NAMING.match(raw)
+    return (_COMMENT.sub(b"", raw) if commented else raw).strip()
 
 
 def table(lines: Sequence[bytes], keyword: bytes, least: int) -> Float64Array | None:
