@@ -38,9 +38,9 @@ class NotedFolder(Folder):
     notes: Inputs = field(repr=False)
     sizes: dict[str, int] = field(repr=False)
 
-    def find(self, reference: str) -> Path | None:
+    def exact(self, reference: str) -> Path | None:
         """As the folder within."""
-        found = self.inner.find(reference)
+        found = self.inner.exact(reference)
         if found is None and reference:
             self.notes.setdefault(os.path.join(self._way(self.path), reference), None)  # noqa: PTH118
         return found
@@ -104,7 +104,7 @@ def sha256(data: bytes) -> str:
 
 
 def _same(folder: Folder, way: str, known: str | None) -> bool:
-    found = folder.find(way)
+    found = folder.exact(way)
     if found is None or known is None:
         return found is None and known is None
     try:

@@ -63,12 +63,10 @@ class RemoteFolder(Folder):
 
     files: Any
 
-    def find(self, reference: str) -> Path | None:
-        """The file meant by `reference`, or None; found as in a folder of the disk."""
+    def exact(self, reference: str) -> Path | None:
+        """The file at the path `reference`, or None; found as in a folder of the disk."""
         parts = parts_of(reference)
-        if not parts:
-            return None
-        return self._walk(parts) or self._walk(parts[-1:])
+        return self._walk(parts) if parts else None
 
     def beside(self, path: Path) -> Folder:
         """The folder that a file is in."""

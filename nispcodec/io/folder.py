@@ -11,6 +11,12 @@ from pathlib import Path
 from nispcodec.core.errors import MeshError
 
 
+# Names of the longest end of a path that is looked for here.
+MOST_PARTS = 8
+# What Python makes of the bytes of a file's name that are no UTF-8.
+_RAW_BYTE = re.compile("[\udc80-\udcff]")
+
+
 @dataclass(frozen=True)
 class Folder:
     """Finds files by the names that artists' tools leave in asset files."""
@@ -20,14 +26,20 @@ class Folder:
     def find(self, reference: str) -> Path | None:
         """The file meant by `reference`, or None.
 
+        That at the very path, else that at the longest end of it which is here (`ends_of`).
+        """
+        places = map(self.exact, (reference, *ends_of(reference)))
+        return next((path for path in places if path is not None), None)
+
+    def exact(self, reference: str) -> Path | None:
+        """The file at the whole path `reference`, or None.
+
         Backslashes count as slashes, and neither case nor the way matters in which accents are
-        composed. A path from another machine falls back to its last part, beside the asset.
+        composed.
         """
         parts = parts_of(reference)
-        if not parts:
-            return None
         start = Path("/") if Path(reference).is_absolute() else self.path
-        return _walk(start, parts) or _walk(self.path, parts[-1:])
+        return _walk(start, parts) if parts else None
 
     def beside(self, path: Path) -> Folder:
         """The folder that a file which was found here is in."""
@@ -44,6 +56,16 @@ class Folder:
 def parts_of(reference: str) -> list[str]:
     """The names on the way that a reference goes; backslashes count as slashes."""
     return [part for part in re.split(r"[\\/]+", reference) if part not in ("", ".")]
+
+
+def ends_of(reference: str) -> list[str]:
+    """Where a path from another machine may be here: its ends, the longest first.
+
+    "C:/a/b.png" may be at "a/b.png" or at "b.png".
+    """
+    parts = parts_of(reference)
+    first = len(parts) - min(MOST_PARTS, len(parts) - (not Path(reference).is_absolute()))
+    return ["/".join(parts[at:]) for at in range(first, len(parts)) if parts[at] != ".."]
 
 
 def alike(first: str, second: str) -> bool:
@@ -74,10 +96,15 @@ def _entry(folder: Path, name: str) -> Path | None:
     return next((entry for entry in entries if alike(entry.name, name)), None)
 
 
+def readable(name: str) -> str:
+    """The name of a file with its bytes that are no UTF-8 as Latin-1, which old archives have."""
+    return _RAW_BYTE.sub(lambda byte: chr(ord(byte[0]) - 0xDC00), name)
+
+
 def composed(name: str) -> str:
     """The name with accents and letters as one character each, as most tools write it."""
     return unicodedata.normalize("NFC", name)
 
 
 def _alike(name: str) -> str:
-    return composed(composed(name).casefold())
+    return composed(composed(readable(name)).casefold())

@@ -252,6 +252,35 @@ def test_images_lie_beside_their_material_file(tmp_path: Path) -> None:
     assert [texture.name for texture in mesh.textures] == ["w.png", "n.png"]
 
 
+def test_an_image_at_its_very_path_goes_before_others_of_its_name(tmp_path: Path) -> None:
+    for folder, red in (("mats", 1), ("tex", 2)):
+        (tmp_path / folder).mkdir()
+        (tmp_path / folder / "w.png").write_bytes(image(color=(red, 0, 0)))
+    (tmp_path / "mats" / "a.mtl").write_text("newmtl m\nmap_Kd tex/w.png\n")
+    mesh = load_obj(tmp_path, OBJ.replace("a.mtl", "mats/a.mtl"))
+    assert mesh.textures[0].data == image(color=(2, 0, 0))
+
+
+@pytest.mark.parametrize(
+    ("first", "second", "warned"),
+    [
+        ("a/w.png", "b/w.png", True),
+        ("C:\\x\\a\\w.png", "C:\\x\\b\\w.png", True),
+        ("C:\\x\\a\\w.png", "A/W.png", False),
+        ("w.png", "b/w.png", False),
+    ],
+)
+def test_one_image_in_the_place_of_two(
+    tmp_path: Path, first: str, second: str, warned: bool
+) -> None:
+    mtl = f"newmtl m\nmap_Kd {first}\nnewmtl n\nmap_Kd {second}\n"
+    mesh = load_obj(tmp_path, UV_OBJ, a_mtl=mtl, w_png=image())
+    assert len(mesh.textures) == 1
+    taken = "/".join(first.lower().split("\\"))
+    said = f"a.mtl:4: {second!r}: not found, w.png is taken for it as for {taken!r}"
+    assert mesh.warnings == ((said,) if warned else ())
+
+
 @pytest.mark.parametrize("composed_in_mtl", [True, False])
 def test_accents_are_composed_either_way(tmp_path: Path, composed_in_mtl: bool) -> None:
     names = [unicodedata.normalize("NFC", "Ö.png"), unicodedata.normalize("NFD", "Ö.png")]

@@ -12,7 +12,7 @@ from nispcodec.core.arrays import Float64Array
 from nispcodec.core.asset import Material, Texture, TextureMap
 from nispcodec.core.errors import MeshError
 from nispcodec.core.slots import SLOT_TABLE
-from nispcodec.io.folder import Folder, composed
+from nispcodec.io.folder import Folder, composed, ends_of, parts_of, readable
 from nispcodec.io.images import TextureShelf, is_gray
 from nispcodec.io.read import wavefront
 from nispcodec.io.read.mtl import MapStatement, MtlMaterial, parse_mtl
@@ -66,6 +66,8 @@ class MaterialReader:
         self._composed: dict[str, str] = {}
         self._folders: dict[str, Folder] = {}
         self._placements: dict[str, Placement] = {}
+        # Files that were not found at their very path -> the path that each was taken for first.
+        self._stand_ins: dict[Path, list[str]] = {}
 
     @property
     def textures(self) -> Sequence[Texture]:
@@ -223,7 +225,7 @@ class MaterialReader:
             self._warn(statement, "a gray height map, not a normal map: left out")
             return None
         self._warn_of_options(statement)
-        texture = self._shelf.add(path.name, data, str(path))
+        texture = self._shelf.add(readable(path.name), data, readable(str(path)))
         if texture is None:
             return None
         clamp = [value.lower() for value in statement.options.get("-clamp", [])]
@@ -231,11 +233,31 @@ class MaterialReader:
         return TextureMap(texture, (wrap, wrap), strength=_strength(statement))
 
     def _image(self, statement: MapStatement, folder: Folder) -> Path | None:
-        """The image of a statement: beside its material file, else beside the OBJ."""
-        places = (
-            place.find(name) for name in statement.references for place in (folder, self._folder)
-        )
+        """The image of a statement: beside its material file, else beside the OBJ.
+
+        Only where neither has it, at the longest end of its path that either has.
+        """
+        names = statement.references
+        path = self._beside_either(names, folder)
+        if path is not None:
+            return path
+        path = self._beside_either([end for name in names for end in ends_of(name)], folder)
+        if path is not None:
+            self._warn_of_stand_in(statement, path)
+        return path
+
+    def _beside_either(self, names: Sequence[str], folder: Folder) -> Path | None:
+        places = (place.exact(name) for name in names for place in (folder, self._folder))
         return next((path for path in places if path is not None), None)
+
+    def _warn_of_stand_in(self, statement: MapStatement, path: Path) -> None:
+        """Where one file is taken for two paths of which neither may be the other's end."""
+        wanted = parts_of(statement.reference.casefold())
+        known = self._stand_ins.setdefault(path, wanted)
+        shared = min(len(known), len(wanted))
+        if known[-shared:] != wanted[-shared:]:
+            others = repr("/".join(known))
+            self._warn(statement, f"not found, {path.name} is taken for it as for {others}")
 
     def _warn_of_options(self, statement: MapStatement) -> None:
         for option, values in statement.options.items():
