@@ -10,7 +10,6 @@ from pathlib import Path
 
 from nispcodec.core.errors import MeshError
 
-
 # Names of the longest end of a path that is looked for here.
 MOST_PARTS = 8
 # What Python makes of the bytes of a file's name that are no UTF-8.

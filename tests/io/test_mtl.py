@@ -208,6 +208,54 @@ def test_several_libraries(tmp_path: Path, written: str) -> None:
     assert mesh.warnings == ()
 
 
+def load_two(folder: Path, text: str) -> TexturedMesh:
+    """An OBJ beside two files that hold a red and a green material of one name."""
+    files = {"a_mtl": "newmtl m\nKd 1 0 0\n", "b_mtl": "newmtl m\nKd 0 1 0\n"}
+    return load_obj(folder, TRIANGLE + text, **files)
+
+
+def reds(mesh: TexturedMesh) -> list[float]:
+    return [mesh.materials[number].base_color[0] for number in mesh.face_materials]
+
+
+@pytest.mark.parametrize(
+    ("text", "red", "counts"),
+    [
+        ("mtllib a.mtl b.mtl\nusemtl m\nf 1 2 3\n", 1.0, "a.mtl"),
+        ("mtllib b.mtl a.mtl\nusemtl m\nf 1 2 3\n", 0.0, "b.mtl"),
+        ("mtllib a.mtl\nmtllib b.mtl\nusemtl m\nf 1 2 3\n", 0.0, "b.mtl"),
+        ("usemtl m\nf 1 2 3\nmtllib a.mtl\nmtllib b.mtl\n", 1.0, "a.mtl"),
+    ],
+)
+def test_of_two_materials_of_a_name_one_counts(
+    tmp_path: Path, text: str, red: float, counts: str
+) -> None:
+    mesh = load_two(tmp_path, text)
+    assert reds(mesh) == [red]
+    (warning,) = mesh.warnings
+    assert warning.startswith("material 'm' is not the same in ")
+    assert warning.endswith(f": that of {counts} counts")
+
+
+def test_in_merged_files_each_part_has_the_materials_named_last(tmp_path: Path) -> None:
+    first = "mtllib a.mtl\nusemtl m\nf 1 2 3\n"
+    mesh = load_two(tmp_path, first + "mtllib b.mtl\nusemtl m\nf 1 3 2\n" + first)
+    assert reds(mesh) == [1.0, 0.0]
+    assert len(mesh.materials) == 2
+    assert mesh.warnings[0] == (
+        "material 'm' is not the same in a.mtl and in b.mtl: "
+        "of these the one whose mtllib comes last before a face counts"
+    )
+
+
+def test_the_same_material_in_two_files_is_one(tmp_path: Path) -> None:
+    same = "newmtl m\nKd 1 0 0\nmap_Kd w.png\n"
+    text = OBJ + OBJ.replace("a.mtl", "b.mtl").replace("1 2 3", "1 3 2")
+    mesh = load_obj(tmp_path, text, a_mtl=same, b_mtl="# other\n" + same, w_png=image())
+    assert mesh.warnings == ("dropped 3 unreferenced vertices",)
+    assert len(mesh.materials) == 1
+
+
 @pytest.mark.parametrize("cut", ["", " # as scanned", " #2 # as scanned"])
 def test_a_number_sign_may_belong_to_a_name(tmp_path: Path, cut: str) -> None:
     names = [f"Grey #{n}{cut}" for n in (1, 2)]
@@ -399,6 +447,30 @@ def test_a_backslash_ends_a_path_and_goes_on_in_no_line(tmp_path: Path) -> None:
     mesh = load(tmp_path, "map_Bump C:\\tex\\\nKd 0 1 0\n")
     assert mesh.materials[0].base_color[:3] == (0.0, 1.0, 0.0)
     assert mesh.warnings == ("a.mtl:2: 'C:\\\\tex\\\\': image not found",)
+
+
+def test_statements_that_are_left_out_are_named_once(tmp_path: Path) -> None:
+    mesh = load(tmp_path, "Tf .2 .2 .2\nPc 1\nnormal n.png\nPc .5\n")
+    assert mesh.warnings == ("a.mtl: left out statements 'tf', 'pc', 'normal', first in line 2",)
+
+
+@pytest.mark.parametrize("line", ["Tf 1 1 .5", "Tf xyz 1 1 1", "Ps .1", "aniso .3", "1", "\x00"])
+def test_a_statement_that_is_left_out_is_named(tmp_path: Path, line: str) -> None:
+    (warning,) = load(tmp_path, line).warnings
+    keyword = line.split(" ")[0].lower()
+    assert warning == f"a.mtl: left out statement {keyword!r}, first in line 2"
+
+
+def test_what_every_exporter_writes_is_no_loss(tmp_path: Path) -> None:
+    lines = "Ns 250\nKa 1 1 1\nKs .5 .5 .5\nNi 1.45\nillum 2\nsharpness 60\nTf 1.0 1.0 1.0\n"
+    lines += "Tf 0 0 0\nPs 0.0\nPc 0.000\nPcr .03\naniso 0\nanisor 0\n"
+    assert load(tmp_path, lines).warnings == ()
+
+
+def test_a_file_of_other_kind_gives_one_warning(tmp_path: Path) -> None:
+    noise = "\n".join(f"k{number} 1" for number in range(1000))
+    (warning,) = load(tmp_path, noise).warnings
+    assert warning.endswith("'k7', ..., first in line 2")
 
 
 def test_words_that_are_no_options_take_no_time(tmp_path: Path) -> None:

@@ -14,6 +14,13 @@ from nispcodec.io.read import wavefront
 _VALUES = {"kd": (1, 3), "ke": (1, 3), "d": (1,), "tr": (1,), "pr": (1,), "pm": (1,)}
 # Statements of images; so are all that begin with map_.
 _MAPS = ("norm", "bump", "disp", "decal", "refl")
+# Statements that nearly every file has and a material here has no place for (docs/limits.md), and
+# those that only shape what pc and aniso ask for.
+_SILENT = frozenset(["ka", "ks", "ns", "ni", "illum", "sharpness", "pcr", "anisor"])
+# Statements that are left out -> values with which they change nothing, as exporters write them.
+_NEUTRAL = {"tf": (0.0, 1.0), "pc": (0.0,), "ps": (0.0,), "aniso": (0.0,)}
+# Names that one warning lists.
+_MOST_SHOWN = 8
 _NUMBERS, _SWITCH, _WORD = "numbers", "on or off", "a word"
 # Options of image statements -> the largest number of values they take, and what these are.
 _OPTIONS = {
@@ -39,7 +46,7 @@ class MapStatement:
 
     references: tuple[str, ...]
     options: dict[str, list[str]]
-    place: str
+    place: str = field(compare=False)
 
     @property
     def reference(self) -> str:
@@ -63,6 +70,7 @@ def parse_mtl(data: bytes, name: str, warnings: list[str]) -> dict[str, MtlMater
     `name`, the line, what was expected and what was found.
     """
     materials: dict[str, MtlMaterial] = {}
+    left_out: dict[str, int] = {}
     current = MtlMaterial("")
     for number, line in wavefront.logical_lines(data):
         keyword = wavefront.text(line.split(None, 1)[0]).lower()
@@ -85,7 +93,26 @@ def parse_mtl(data: bytes, name: str, warnings: list[str]) -> dict[str, MtlMater
                 current.maps[keyword] = statement
             else:
                 warnings.append(f"{place}: expected a file name, found nothing: {keyword} left out")
+        elif not _is_no_loss(keyword, line):
+            left_out.setdefault(keyword[:32], number)
+    if left_out:
+        warnings.append(_said(left_out, name))
     return materials
+
+
+def _is_no_loss(keyword: str, line: bytes) -> bool:
+    words, neutral = line.split()[1:], _NEUTRAL.get(keyword, ())
+    numbers = [float(word) for word in words if is_number(wavefront.text(word))]
+    unchanged = any(set(numbers) == {value} for value in neutral)
+    return keyword in _SILENT or (unchanged and len(numbers) == len(words))
+
+
+def _said(left_out: dict[str, int], name: str) -> str:
+    names = list(map(repr, left_out))
+    shown = ", ".join(names[:_MOST_SHOWN]) + (", ..." if names[_MOST_SHOWN:] else "")
+    statements = "statement" if len(names) == 1 else "statements"
+    first = next(iter(left_out.values()))
+    return f"{name}: left out {statements} {shown}, first in line {first}"
 
 
 def _values(keyword: str, line: bytes, place: str, warnings: list[str]) -> dict[str, list[float]]:

@@ -18,7 +18,7 @@ from nispcodec.io.folder import Folder
 from nispcodec.io.read import wavefront
 from nispcodec.io.read.coordinates import without_unusable
 from nispcodec.io.read.normals import with_creases
-from nispcodec.io.read.obj_materials import MaterialReader, Placement
+from nispcodec.io.read.obj_materials import MaterialReader, Meant, Placement
 from nispcodec.io.read.polygons import triangulate
 
 # Statements that carry nothing we could lose: grouping, display.
@@ -62,10 +62,11 @@ class _Statements:
         self.sizes = array("q")
         self.face_lines = array("q")
         self.face_materials = array("q")
-        self.materials: dict[str, int] = {}
+        # Names, and how many `mtllib` statements were before them.
+        self.materials: dict[tuple[str, int], int] = {}
         self.libraries: list[tuple[int, str]] = []
         self.left_out: dict[str, int] = {}
-        self._material = ""
+        self._material = ("", 0)
         self._group = 0
         # Most corners come up in several faces: half the parsing time saved.
         self._known_corners: dict[bytes, int] = {}
@@ -254,7 +255,7 @@ class _Statements:
         return True
 
     def _use_material(self, line: bytes) -> None:
-        self._material = wavefront.rest(line)
+        self._material = (wavefront.rest(line), len(self.libraries))
 
     def _library(self, line: bytes) -> None:
         self.libraries.append((self.line, wavefront.rest(line)))
@@ -271,10 +272,10 @@ def _assemble(
     corner_uvs = _known_uvs(statements, corner_uvs, len(uvs), warnings)
     triangles, owner = triangulate(positions[corners], sizes)
     uv_faces = _whole_or_none(corner_uvs[triangles], warnings, statements.name)
-    names, numbers = _resolved(list(statements.materials), materials)
+    meant, numbers = _resolved(list(statements.materials), materials)
     face_materials = numbers[_integers(statements.face_materials)[owner]]
-    made = materials.materials(names)
-    placements = [materials.placement(name) for name in names]
+    made = materials.materials(meant)
+    placements = list(map(materials.placement, meant))
     uvs, placed = _placed(uvs, uv_faces.astype(np.int64), face_materials, placements)
     uvs, placed = without_unusable(uvs, placed, statements.name, warnings)
     _warn_of_normals(statements, corner_normals, warnings)
@@ -316,11 +317,13 @@ def _creased(
     return with_creases(mesh, normals, _integers(statements.smoothing)[owner])
 
 
-def _resolved(written: list[str], materials: MaterialReader) -> tuple[list[str], Int64Array]:
+def _resolved(
+    written: list[tuple[str, int]], materials: MaterialReader
+) -> tuple[list[Meant], Int64Array]:
     """The different materials that an OBJ's names mean, and the number there of each name."""
-    resolved = [materials.resolved(name) for name in written]
-    numbers = {name: number for number, name in enumerate(dict.fromkeys(resolved))}
-    return list(numbers), np.array([numbers[name] for name in resolved], dtype=np.int64)
+    resolved = [materials.resolved(*name) for name in written]
+    numbers = {meant: number for number, meant in enumerate(dict.fromkeys(resolved))}
+    return list(numbers), np.array([numbers[meant] for meant in resolved], dtype=np.int64)
 
 
 def _placed(

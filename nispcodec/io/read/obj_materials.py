@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from bisect import bisect_left
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, field
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 
@@ -49,6 +51,37 @@ class Placement:
         return placed
 
 
+class Meant(NamedTuple):
+    """A material that an OBJ means: its name, and the material file that holds it, if any does."""
+
+    name: str
+    library: Path | None
+
+
+@dataclass(frozen=True)
+class _Library:
+    """One material file: its folder, its materials, and where `mtllib` statements name it.
+
+    `named` has the numbers of the statements, and the file's place in each.
+    """
+
+    folder: Folder
+    materials: dict[str, MtlMaterial]
+    named: list[tuple[int, int]] = field(default_factory=list)
+
+    def nearness(self, statements: int) -> tuple[bool, int, int]:
+        """How much this file is meant after so many statements: by the last of them the most.
+
+        Of the files of one statement it is the first.
+        """
+        before = bisect_left(self.named, (statements,))
+        if before:
+            statement, place = self.named[before - 1]
+            return True, statement, -place
+        statement, place = self.named[0]
+        return False, -statement, -place
+
+
 class MaterialReader:
     """Turns material names into materials with the MTL files and images of one folder.
 
@@ -59,13 +92,13 @@ class MaterialReader:
         self._folder = folder
         self._warnings = warnings
         self._shelf = TextureShelf(warnings)
-        self._libraries: set[Path] = set()
+        self._libraries: dict[Path, _Library] = {}
+        self._statements = 0
         self._lost = False
-        self._known: dict[str, MtlMaterial] = {}
+        self._holders: dict[str, list[Path]] = {}
         self._commented: dict[str, set[str]] = {}
         self._composed: dict[str, str] = {}
-        self._folders: dict[str, Folder] = {}
-        self._placements: dict[str, Placement] = {}
+        self._placements: dict[Meant, Placement] = {}
         # Files that were not found at their very path -> the path that each was taken for first.
         self._stand_ins: dict[Path, list[str]] = {}
 
@@ -79,21 +112,27 @@ class MaterialReader:
 
         `place` is that of the statement, for warnings.
         """
-        for path in self._library_paths(reference, place):
-            if path in self._libraries:
-                continue
-            self._libraries.add(path)
-            try:
-                found = parse_mtl(self._folder.read(path), path.name, self._warnings)
-            except MeshError as why:
-                self._warnings.append(f"{place}: {why}: left out")
-                continue
-            self._known.update(found)
-            self._folders.update(dict.fromkeys(found, self._folder.beside(path)))
-            self._composed.update((composed(name), name) for name in found)
-            for name in found:
-                for short in wavefront.without_comments(name)[1:]:
-                    self._commented.setdefault(short, set()).add(name)
+        for number, path in enumerate(dict.fromkeys(self._library_paths(reference, place))):
+            if path not in self._libraries:
+                materials = self._read_library(path, place)
+                self._libraries[path] = _Library(self._folder.beside(path), materials)
+                self._note_names(materials, path)
+            self._libraries[path].named.append((self._statements, number))
+        self._statements += 1
+
+    def _read_library(self, path: Path, place: str) -> dict[str, MtlMaterial]:
+        try:
+            return parse_mtl(self._folder.read(path), path.name, self._warnings)
+        except MeshError as why:
+            self._warnings.append(f"{place}: {why}: left out")
+            return {}
+
+    def _note_names(self, names: Iterable[str], path: Path) -> None:
+        for name in names:
+            self._holders.setdefault(name, []).append(path)
+            self._composed[composed(name)] = name
+            for short in wavefront.without_comments(name)[1:]:
+                self._commented.setdefault(short, set()).add(name)
 
     def _library_paths(self, reference: str, place: str) -> list[Path]:
         """The files that a statement names: one, or several between spaces, with spaces in them."""
@@ -122,26 +161,65 @@ class MaterialReader:
                 return count, path
         return 1, None
 
-    def resolved(self, name: str) -> str:
+    def resolved(self, name: str, statements: int) -> Meant:
+        """The material that an OBJ calls `name` after so many `mtllib` statements.
+
+        Of several files that hold it, that of the last of these statements is meant; of those that
+        hold the same, the first.
+        """
+        held = self._held_name(name)
+        paths = self._holders.get(held, ())
+        if not paths:
+            return Meant(held, None)
+        near = max(paths, key=lambda path: self._libraries[path].nearness(statements))
+        return Meant(held, next(path for path in paths if not self._differ(held, path, near)))
+
+    def _held_name(self, name: str) -> str:
         """The name by which a material file holds the material that an OBJ calls `name`.
 
         `name` itself where none does. What follows a "#" counts as a comment where it has to.
         """
         for candidate in wavefront.without_comments(name):
             for known in (candidate, self._composed.get(composed(candidate), "")):
-                if known in self._known:
+                if known in self._holders:
                     return known
         alike = self._commented.get(name, ())
         return next(iter(alike)) if name and len(alike) == 1 else name
 
-    def materials(self, names: Sequence[str]) -> tuple[Material, ...]:
-        """One material for each name, in order; at least one."""
-        self._warn_of_unknown([repr(name) for name in names if name and name not in self._known])
-        return tuple(self._material(name) for name in names) or (Material(),)
+    def materials(self, meant: Sequence[Meant]) -> tuple[Material, ...]:
+        """One material for each that is meant, in order; at least one."""
+        self._warn_of_unknown([repr(name) for name, library in meant if name and library is None])
+        self._warn_of_others_of_a_name(meant)
+        return tuple(map(self._material, meant)) or (Material(),)
 
-    def placement(self, name: str) -> Placement:
+    def placement(self, meant: Meant) -> Placement:
         """Where the maps of a material that `materials` has made lie."""
-        return self._placements.get(name, Placement())
+        return self._placements.get(meant, Placement())
+
+    def _warn_of_others_of_a_name(self, meant: Sequence[Meant]) -> None:
+        """Where files that hold a material do not agree: which of them counts."""
+        used: dict[str, list[Path]] = {}
+        for name, library in meant:
+            if library is not None:
+                used.setdefault(name, []).append(library)
+        for name, libraries in used.items():
+            paths = self._holders[name]
+            if any(self._differ(name, paths[0], other) for other in paths[1:]):
+                held = " and in ".join(map(self._shown, paths[:MOST_SHOWN]))
+                counts = f"that of {self._shown(libraries[0])} counts"
+                if len(libraries) > 1:
+                    counts = "of these the one whose mtllib comes last before a face counts"
+                self._warnings.append(f"material {name!r} is not the same in {held}: {counts}")
+
+    def _differ(self, name: str, first: Path, second: Path) -> bool:
+        one, other = self._libraries[first], self._libraries[second]
+        made, again = one.materials[name], other.materials[name]
+        return made != again or (bool(made.maps) and one.folder != other.folder)
+
+    def _shown(self, path: Path) -> str:
+        """A file's path from the OBJ, for messages."""
+        inside = path.is_relative_to(self._folder.path)
+        return readable(str(path.relative_to(self._folder.path) if inside else path))
 
     def _warn_of_unknown(self, missing: Sequence[str]) -> None:
         # A file that was not found has its warning already.
@@ -151,17 +229,18 @@ class MaterialReader:
         shown = ", ".join(missing[:MOST_SHOWN]) + (", ..." if missing[MOST_SHOWN:] else "")
         self._warnings.append(f"{are.format(shown)} in no material file")
 
-    def _material(self, name: str) -> Material:
-        if name not in self._known:
-            return Material(name=material_name(name, self._warnings) or "material")
-        return self._finished(self._known[name])
+    def _material(self, meant: Meant) -> Material:
+        if meant.library is None:
+            return Material(name=material_name(meant.name, self._warnings) or "material")
+        library = self._libraries[meant.library]
+        return self._finished(meant, library.materials[meant.name], library.folder)
 
-    def _finished(self, found: MtlMaterial) -> Material:
+    def _finished(self, meant: Meant, found: MtlMaterial, folder: Folder) -> Material:
         alpha = _alpha(found.values)
         if alpha == 0:
             self._warnings.append(f"material {found.name!r}: invisible, taken as opaque")
             alpha = 1.0
-        maps = self._maps(found)
+        maps = self._maps(meant, found, folder)
         red, green, blue = _color(found.values.get("kd"), (1.0, 1.0, 1.0))
         if "base_color" in maps and (red, green, blue) == (0.0, 0.0, 0.0):
             # Exporters that mean the image alone write black here.
@@ -180,11 +259,10 @@ class MaterialReader:
             maps=maps,
         )
 
-    def _maps(self, found: MtlMaterial) -> dict[str, TextureMap]:
+    def _maps(self, meant: Meant, found: MtlMaterial, folder: Folder) -> dict[str, TextureMap]:
         maps: dict[str, TextureMap] = {}
         taken: dict[str, str] = {}
         placements: dict[str, Placement] = {}
-        folder = self._folders[found.name]
         for keyword, slot in SLOT_OF.items():
             statement = found.maps.get(keyword)
             if statement is None or statement.reference == taken.get(slot):
@@ -196,18 +274,18 @@ class MaterialReader:
             if made is not None:
                 maps[slot], taken[slot] = made, statement.reference
                 placements[slot] = _placement(statement)
-        self._place(found, placements)
+        self._place(meant, placements)
         self._warn_of_others(found)
         return maps
 
-    def _place(self, found: MtlMaterial, placements: dict[str, Placement]) -> None:
+    def _place(self, meant: Meant, placements: dict[str, Placement]) -> None:
         """Take that of the base color, else of the first map: a mesh has one set of UVs."""
         different = set(placements.values())
         if different:
-            self._placements[found.name] = next(iter(placements.values()))
+            self._placements[meant] = next(iter(placements.values()))
         if len(different) > 1:
             self._warnings.append(
-                f"material {found.name!r}: -s and -o of its maps differ; "
+                f"material {meant.name!r}: -s and -o of its maps differ; "
                 f"those of {next(iter(placements))} are taken for all"
             )
 
