@@ -18,20 +18,24 @@ FLATTEST = 1e-10
 LARGEST_COORDINATE = 1e15
 
 
+# Warnings that an error ends with.
+_MOST_SAID = 5
+
+
 def clean(mesh: TexturedMesh, name: str) -> TexturedMesh:
     """Drop degenerate faces, exact duplicates, then vertices and UVs that no face uses.
 
     Each kind is counted in `warnings`. Vertices of equal position are not merged. Raises MeshError
-    naming the file `name` when no face is left or a coordinate is too large to compute with.
+    naming the file `name` and what its reader left out, when no face is left or a coordinate of one
+    is too large to compute with.
     """
     if not len(mesh.faces):
-        raise MeshError(f"{name}: expected at least one face, found none")
-    _expect_moderate(mesh.positions, name)
+        raise _error(mesh, f"{name}: expected at least one face, found none")
+    _expect_moderate(mesh.corners, name)
     flat = degenerate_faces(mesh)
     if flat.all():
-        raise MeshError(
-            f"{name}: expected faces with an area, found {counted(len(flat), 'degenerate face')}"
-        )
+        found = counted(len(flat), "degenerate face")
+        raise _error(mesh, f"{name}: expected faces with an area, found {found}")
     mesh = _drop_faces(mesh, flat, "degenerate")
     mesh = _drop_faces(mesh, duplicate_faces(mesh), "duplicate")
     return _drop_unreferenced(mesh)
@@ -61,6 +65,14 @@ def duplicate_faces(mesh: TexturedMesh) -> BoolArray:
     repeated = np.zeros(len(keys), dtype=bool)
     repeated[order[1:]] = (keys[order[1:]] == keys[order[:-1]]).all(axis=1)
     return repeated
+
+
+def _error(mesh: TexturedMesh, what: str) -> MeshError:
+    """The error with what was left out of the mesh, which may be what is missing."""
+    if not mesh.warnings:
+        return MeshError(what)
+    said = "; ".join(mesh.warnings[:_MOST_SAID])
+    return MeshError(f"{what} ({said}{'; ...' if mesh.warnings[_MOST_SAID:] else ''})")
 
 
 def _expect_moderate(positions: Float64Array, name: str) -> None:

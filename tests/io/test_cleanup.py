@@ -1,5 +1,7 @@
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from numpy.typing import ArrayLike
@@ -98,6 +100,22 @@ def test_unreferenced_rows_go_and_the_rest_keeps_its_order() -> None:
         "dropped 2 unreferenced vertices",
         "dropped 2 unreferenced texture coordinates",
     )
+
+
+def test_a_position_that_no_face_uses_may_be_anywhere() -> None:
+    after = clean(mesh([*SQUARE, (1e200, 0, 0)], [(0, 1, 2), (0, 2, 3)]), "a.obj")
+    assert len(after.positions) == 4
+    assert after.warnings == ("dropped 1 unreferenced vertex",)
+
+
+@pytest.mark.parametrize("faces", [[], [(0, 0, 1)]])
+@pytest.mark.parametrize(("count", "end"), [(1, "w0)"), (5, "; w4)"), (6, "; w4; ...)")])
+def test_an_error_says_what_was_left_out(faces: ArrayLike, count: int, end: str) -> None:
+    warnings = tuple(f"w{number}" for number in range(count))
+    with pytest.raises(MeshError) as caught:
+        clean(replace(mesh(SQUARE, faces), warnings=warnings), "a.obj")
+    assert " (w0" in str(caught.value)
+    assert str(caught.value).endswith(end)
 
 
 @pytest.mark.parametrize(

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+import warnings
 from dataclasses import replace
 from pathlib import Path
 
@@ -71,6 +73,14 @@ def test_without_normals_smoothing_groups_tell(
 
 def test_without_either_nobody_said(tmp_path: Path) -> None:
     assert roof(tmp_path, plain()).creases is None
+
+
+@pytest.mark.parametrize("length", ["e30", "e-30", "e200", "e-200", "e-310", "e307"])
+def test_normals_may_have_any_length(tmp_path: Path, length: str) -> None:
+    normals = re.sub(r"\b1\b", f"1{length}", SMOOTH)
+    lines = [" ".join(f"{point}//{BY_POINT[point]}" for point in face) for face in FACES]
+    with warnings.catch_warnings(action="error"):
+        assert not ridge(roof(tmp_path, normals + faces(*lines)))
 
 
 def test_normals_that_are_none_make_flat_faces(tmp_path: Path) -> None:

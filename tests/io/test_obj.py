@@ -85,6 +85,30 @@ def test_vertex_colors_are_left_out_with_a_warning() -> None:
     assert mesh.warnings == ("a.obj: left out vertex colors, first in line 1",)
 
 
+@pytest.mark.parametrize("end", ["\n", "\r\n", "\r"])
+def test_colors_in_comments_are_left_out_with_a_warning(end: str) -> None:
+    text = "# ZBrush\n#MRGB ffff0000ff00ff00ff0000ff\n" + TRIANGLE + "f 1 2 3\n#MRGBA is none\n"
+    mesh = read(text.replace("\n", end))
+    assert mesh.warnings == ("a.obj: left out vertex colors, first in line 2",)
+    assert read("#MRGB ff\n" + TRIANGLE + "f 1 2 3\n").warnings[0].endswith("first in line 1")
+    assert read(TRIANGLE + "f 1 2 3 # of #MRGB x\n").warnings == ()
+
+
+@pytest.mark.parametrize("words", ["nan nan nan", "0 1.#INF 0", "1e999 0 0", "x", "0 0"])
+def test_a_position_that_no_face_uses_may_be_no_number(words: str) -> None:
+    mesh = read(f"v {words}\n" + TRIANGLE + "f 2 3 4\nf -3 -2 -1\n")
+    assert corners(mesh)[0] == [[0, 0, 0], [1, 0, 0], [0, 1, 0]]
+    assert mesh.warnings == (
+        "a.obj: left out positions that are no finite numbers and that no face uses, "
+        "first in line 1",
+    )
+
+
+def test_many_positions_that_are_no_numbers_end_the_reading() -> None:
+    with pytest.raises(MeshError, match=r"a\.obj:1001: expected 3 or more finite numbers"):
+        read("v x\n" * 100_000)
+
+
 def test_faces_with_and_without_uv_mix() -> None:
     mesh = read(TRIANGLE + "vt 0 0\nf 1/1 2/1 3/1\nf 3 2 1\nf 1/1 2 3/1\n")
     assert mesh.has_uv.tolist() == [True, False, False]
@@ -114,18 +138,18 @@ def test_a_one_number_uv_has_v_zero() -> None:
 @pytest.mark.parametrize(
     ("text", "expected"),
     [
-        ("v 0 0 nan\n", "a.obj:1: expected 3 or more finite numbers, found '0 0 nan'"),
-        ("v 0 0 0\nv 0 inf 0\n", "a.obj:2: "),
-        ("v 0 0 1e999\n", "a.obj:1: "),
-        ("v 0 0\n", "a.obj:1: expected 3"),
-        ("v 0 0 zero\n", "found '0 0 zero'"),
+        ("v 0 0 nan\nf 1 1 1\n", "a.obj:1: expected 3 or more finite numbers, found '0 0 nan'"),
+        ("v 0 0 0\nv 0 inf 0\nf 1 2 1\n", "a.obj:2: "),
+        ("v 0 0 1e999\nf 1 1 1\n", "a.obj:1: "),
+        ("v 0 0\nf 1 1 1\n", "a.obj:1: expected 3"),
+        ("v 0 0 zero\nf 1 1 1\n", "found '0 0 zero'"),
         (TRIANGLE + "f 1 2 4\n", "a.obj:4: expected a vertex index up to 3, found 4"),
         (TRIANGLE + "f 1 2 3\nf 1 2 3 9\n", "a.obj:5: expected a vertex index up to 3, found 9"),
         (TRIANGLE + "f 1 2 0\n", "a.obj:4: expected an index"),
         (TRIANGLE + "f 1 2 -4\n", "from -1 down to -3, found '-4'"),
         (TRIANGLE + "f 1 2 x\n", "found 'x'"),
         (TRIANGLE + "f 1 2 99999999999999999999\n", "a.obj:4: expected an index"),
-        ("v 0 \\\n0 \\\nx\n", "a.obj:1: "),
+        ("v 0 \\\n0 \\\nx\nf 1 1 1\n", "a.obj:1: "),
     ],
 )
 def test_errors_name_file_and_line(text: str, expected: str) -> None:

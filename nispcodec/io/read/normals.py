@@ -23,6 +23,9 @@ def with_creases(
     Faces without normals are flat, unless they are of one smoothing group (m,) above 0.
     """
     places = row_ids(mesh.positions + 0.0)[mesh.faces]
+    # Powers of two change no digit, and no square of what they leave is too large.
+    _, powers = np.frexp(np.abs(normals).max(axis=2, keepdims=True))
+    normals = np.ldexp(normals, -powers)
     lengths = np.linalg.norm(normals, axis=2, keepdims=True)
     usable = np.isfinite(lengths) & (lengths > 0)
     bare = ~usable.all(axis=(1, 2))

@@ -25,7 +25,11 @@ from nispcodec.io.read.polygons import triangulate
 _SILENT = frozenset(
     b"o g mg lod shadow_obj trace_obj usemap maplib bevel c_interp d_interp".split()
 )
+# ZBrush's colors of vertices, in comments.
+_POLYPAINT = re.compile(rb"(?:^|[\r\n])[ \t]*#MRGB\s")
 _LARGEST_INDEX = 2**31 - 1
+# Positions that are no numbers: a file with more of them is not looked through to its end.
+_MOST_UNUSABLE = 1000
 # A corner whose indices count from the file's start, and are none too large.
 _PLAIN = rb"([1-9]\d{0,8})"
 _PLAIN_CORNER = re.compile(rb"%b(?:/%b?(?:/%b?)?)?" % (_PLAIN, _PLAIN, _PLAIN))
@@ -66,6 +70,7 @@ class _Statements:
         self.materials: dict[tuple[str, int], int] = {}
         self.libraries: list[tuple[int, str]] = []
         self.left_out: dict[str, int] = {}
+        self.unusable: dict[int, MeshError] = {}  # by the number of the position
         self._material = ("", 0)
         self._group = 0
         # Most corners come up in several faces: half the parsing time saved.
@@ -88,6 +93,10 @@ class _Statements:
         }
 
     def parse(self, data: bytes) -> None:
+        paint = _POLYPAINT.search(data)
+        if paint:
+            self.line = len(data[: paint.end() - 1].splitlines())
+            self._leave_out("vertex colors")
         for first, beginning, lines in wavefront.runs(data):
             self.line = first
             at_once = self._run_handlers.get(beginning)
@@ -125,9 +134,20 @@ class _Statements:
 
     def _position(self, line: bytes) -> None:
         words = line.split()
-        self.positions.extend(wavefront.numbers(words[1:], 3, self._place())[:3])
+        try:
+            self.positions.extend(wavefront.numbers(words[1:], 3, self._place())[:3])
+        except MeshError as why:
+            self._unusable_position(why)
         if len(words) > 6:
             self._leave_out("vertex colors")
+
+    def _unusable_position(self, why: MeshError) -> None:
+        """Stand 0 in for a position that only faces which use it make an error."""
+        if len(self.unusable) == _MOST_UNUSABLE:
+            raise why
+        self.unusable[len(self.positions) // 3] = why
+        self._leave_out("positions that are no finite numbers and that no face uses")
+        self.positions.extend((0.0,) * 3)
 
     def _uv(self, line: bytes) -> None:
         words = line.split()[1:]
@@ -269,6 +289,7 @@ def _assemble(
     sizes = _integers(statements.sizes)
     corners, corner_uvs, corner_normals = statements.corner_indices()
     _expect_indices(statements, corners, len(positions))
+    _expect_usable(statements, corners)
     corner_uvs = _known_uvs(statements, corner_uvs, len(uvs), warnings)
     triangles, owner = triangulate(positions[corners], sizes)
     uv_faces = _whole_or_none(corner_uvs[triangles], warnings, statements.name)
@@ -355,6 +376,12 @@ def _integers(values: array[int]) -> Int64Array:
 def _expect_indices(statements: _Statements, indices: Int64Array, count: int) -> None:
     if indices.size and indices.max() >= count:
         raise MeshError(_first_beyond(statements, indices, count, "vertex"))
+
+
+def _expect_usable(statements: _Statements, indices: Int64Array) -> None:
+    used = indices[np.isin(indices, list(statements.unusable))]
+    if used.size:
+        raise statements.unusable[int(used.min())]
 
 
 def _known_uvs(
