@@ -74,7 +74,7 @@ def image_size(texture: Texture) -> tuple[int, int]:
 
     try:
         with (
-            warnings.catch_warnings(action="ignore", category=PIL.Image.DecompressionBombWarning),
+            warnings.catch_warnings(action="ignore"),  # of bombs, and of tags that are broken
             PIL.Image.open(io.BytesIO(texture.data), formats=_FORMATS) as image,
         ):
             return image.size
@@ -103,6 +103,7 @@ def stored_pixels(texture: Texture) -> Float32Array | Uint8Array:
     try:
         # Pillow's guard against decompression bombs only warns below twice its limit.
         with (
+            warnings.catch_warnings(action="ignore"),  # of tags that are broken
             warnings.catch_warnings(action="error", category=PIL.Image.DecompressionBombWarning),
             PIL.Image.open(io.BytesIO(texture.data), formats=_FORMATS) as image,
         ):

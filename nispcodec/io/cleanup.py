@@ -14,6 +14,8 @@ from nispcodec.core.errors import MeshError
 
 # A triangle lower than this share of its longest edge is a line.
 FLATTEST = 1e-10
+# And where all are lower than this, no distance to them can be told (nispcodec.metrics.surface).
+NO_AREA = 1e-7
 # Squares of larger coordinates' differences would leave float32 and soon float64.
 LARGEST_COORDINATE = 1e15
 
@@ -32,24 +34,25 @@ def clean(mesh: TexturedMesh, name: str) -> TexturedMesh:
     if not len(mesh.faces):
         raise _error(mesh, f"{name}: expected at least one face, found none")
     _expect_moderate(mesh.corners, name)
-    flat = degenerate_faces(mesh)
-    if flat.all():
-        found = counted(len(flat), "degenerate face")
+    heights = _heights(mesh)
+    if heights.max() <= NO_AREA:
+        found = counted(len(heights), "degenerate face")
         raise _error(mesh, f"{name}: expected faces with an area, found {found}")
-    mesh = _drop_faces(mesh, flat, "degenerate")
+    mesh = _drop_faces(mesh, heights <= FLATTEST, "degenerate")
     mesh = _drop_faces(mesh, duplicate_faces(mesh), "duplicate")
     return _drop_unreferenced(mesh)
 
 
-def degenerate_faces(mesh: TexturedMesh) -> BoolArray:
-    """(m,) bool: which faces repeat a position, or are lines to rounding (`FLATTEST`)."""
-    corners = mesh.corners
-    edges = np.roll(corners, -1, axis=1) - corners
+def _heights(mesh: TexturedMesh) -> Float64Array:
+    """(m,) of every face its height over the longest edge, in lengths of that edge.
+
+    0 where a face repeats a position; rounding leaves lines up to `FLATTEST`.
+    """
+    edges = np.roll(mesh.corners, -1, axis=1) - mesh.corners
     longest = np.linalg.norm(edges, axis=2).max(axis=1)
     scaled = edges / np.where(longest > 0, longest, 1.0)[:, None, None]
-    height = np.linalg.norm(np.cross(scaled[:, 0], scaled[:, 1]), axis=1)
-    flat: BoolArray = (height <= FLATTEST) | (edges == 0).all(axis=2).any(axis=1)
-    return flat
+    heights: Float64Array = np.linalg.norm(np.cross(scaled[:, 0], scaled[:, 1]), axis=1)
+    return heights
 
 
 def duplicate_faces(mesh: TexturedMesh) -> BoolArray:

@@ -14,6 +14,7 @@ import PIL.Image
 
 from nispcodec.core.arrays import Uint16Array
 from nispcodec.core.asset import Texture
+from nispcodec.core.counted import counted
 from nispcodec.core.errors import MeshError, NispError
 from nispcodec.core.texture import BROKEN_IMAGE, what_is_broken
 from nispcodec.io.ktx2 import is_ktx2, png_of_ktx2
@@ -54,6 +55,17 @@ _START_OF_JPEG, _END_OF_JPEG = b"\xff\xd8", b"\xff\xd9"
 _PNG_MODES = ("1", "L", "LA", "RGB", "RGBA", "P", "I;16")
 _BITS, _PHOTOMETRIC, _SAMPLE_FORMAT = 258, 262, 339  # of TIFF
 _WHITE_IS_ZERO, _SIGNED = 0, 2
+_ORIENTATION = 274  # of EXIF
+# What undoes each orientation but the first, that of texels as they are stored.
+_AS_STORED = {
+    2: PIL.Image.Transpose.FLIP_LEFT_RIGHT,
+    3: PIL.Image.Transpose.ROTATE_180,
+    4: PIL.Image.Transpose.FLIP_TOP_BOTTOM,
+    5: PIL.Image.Transpose.TRANSPOSE,
+    6: PIL.Image.Transpose.ROTATE_90,
+    7: PIL.Image.Transpose.TRANSVERSE,
+    8: PIL.Image.Transpose.ROTATE_270,
+}
 
 
 class TextureShelf:
@@ -94,13 +106,30 @@ class TextureShelf:
         if is_ktx2(data):
             return self._converted("KTX2", name, png_of_ktx2(data, place), place)
         data, image = self._whole(data, place)
+        orientation = _orientation(data, image)
+        self._warn_of_change(image, orientation, place)
         found = str(image.format)
         if image.mode == "CMYK":  # what it shows differs from program to program
             found = f"{found} in CMYK"
         if found in _KEPT:
             mime, suffix = _KEPT[found]
             return Texture(self._free_name(_stem(name), suffix), data, mime)
-        return self._converted(found, name, _as_png(image, place), place)
+        turn = _AS_STORED.get(orientation) if found.startswith("TIFF") else None
+        return self._converted(found, name, _as_png(image, place, turn), place)
+
+    def _warn_of_change(self, image: PIL.Image.Image, orientation: int, place: str) -> None:
+        if orientation in _AS_STORED:
+            self._warnings.append(
+                f"{place}: turned or mirrored by its EXIF orientation, which no mesh heeds: "
+                f"taken as it is stored"
+            )
+        values = np.asarray(image) if image.mode == "F" else np.zeros(1)
+        beyond = int((~((values >= 0) & (values <= 1))).sum())
+        if beyond:
+            self._warnings.append(
+                f"{place}: expected numbers from 0 to 1, found {counted(beyond, 'texel')} "
+                f"with others: cut to it"
+            )
 
     def _converted(self, found: str, name: str, png: bytes, place: str) -> Texture:
         self._warnings.append(f"{place}: a {found} image, converted to PNG")
@@ -159,11 +188,28 @@ def _decoded(data: bytes, place: str) -> PIL.Image.Image:
     return image
 
 
-def _as_png(image: PIL.Image.Image, place: str) -> bytes:
+def _orientation(data: bytes, image: PIL.Image.Image) -> int:
+    """That of the EXIF or XMP of an image, 1 where it has none that can be read.
+
+    `data` are the bytes of the `image`, which has lost it where it is a TIFF.
+    """
+    try:
+        with _pillow("image"):
+            if image.format == "TIFF":
+                image = PIL.Image.open(io.BytesIO(data), formats=["TIFF"])
+            return int(image.getexif().get(_ORIENTATION, 1))
+    except MeshError:
+        return 1
+
+
+def _as_png(image: PIL.Image.Image, place: str, turn: PIL.Image.Transpose | None = None) -> bytes:
+    """The image as PNG, turned or mirrored: Pillow heeds the orientation of TIFF, meshes do not."""
     if image.mode == "LAB":  # Pillow would take its numbers for RGB
         raise MeshError(f"{place}: expected an image in RGB or gray, found one in L*a*b*")
     if image.mode in ("I", "F") or image.mode.startswith("I;16"):
         image = PIL.Image.fromarray(_gray_16(image))
+    if turn is not None:
+        image = image.transpose(turn)
     buffer = io.BytesIO()
     with _pillow(place):
         image.convert(image.mode if image.mode in _PNG_MODES else "RGBA").save(buffer, "PNG")

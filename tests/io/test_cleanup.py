@@ -123,6 +123,7 @@ def test_an_error_says_what_was_left_out(faces: ArrayLike, count: int, end: str)
     [
         (SQUARE, [], "at least one face, found none"),
         (SQUARE, [(0, 0, 1), (1, 1, 1)], "with an area, found 2 degenerate faces"),
+        ([(0, 0, 0), (1, 0, 0), (0, 1e-9, 0)], [(0, 1, 2)], "with an area, found 1 degenerate"),
         ([(0, 0, 0), (1e200, 0, 0), (0, 1, 0)], [(0, 1, 2)], "found 1e.200"),
     ],
 )

@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import io
 import struct
+import warnings as python_warnings
 import zlib
 
 import numpy as np
@@ -11,7 +12,7 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 
 from nispcodec.core.asset import Texture
-from nispcodec.core.texture import decode_image, image_bytes
+from nispcodec.core.texture import decode_image, image_bytes, image_size
 from nispcodec.io.images import TextureShelf
 from tests.io.files import image
 
@@ -178,10 +179,51 @@ def test_gray_of_wide_integers_is_as_bright(
 
 def test_floats_beyond_the_range_are_cut_off() -> None:
     buffer = io.BytesIO()
-    PIL.Image.fromarray(np.array([[-1.0, 7.0, np.nan, np.inf]], "f4")).save(buffer, "TIFF")
-    textures, _ = shelf()
+    PIL.Image.fromarray(np.array([[-1.0, 7.0, np.nan, np.inf, 1.0]], "f4")).save(buffer, "TIFF")
+    textures, warnings = shelf()
     textures.add("a.tif", buffer.getvalue(), "a.tif")
-    assert decode_image(textures.textures[0])[0, :, 0].tolist() == [0, 1, 0, 1]
+    assert decode_image(textures.textures[0])[0, :, 0].tolist() == [0, 1, 0, 1, 1]
+    assert warnings == [
+        "a.tif: expected numbers from 0 to 1, found 4 texels with others: cut to it",
+        "a.tif: a TIFF image, converted to PNG",
+    ]
+
+
+def with_orientation(number: int, format: str) -> tuple[bytes, np.ndarray]:
+    """A file of 16 x 8 texels, and these as they are stored."""
+    texels = np.zeros((8, 16, 3), np.uint8)
+    texels[:4, :8], texels[:4, 8:] = (200, 0, 0), (0, 200, 0)
+    exif = PIL.Image.Exif()
+    exif[274] = number
+    buffer = io.BytesIO()
+    more = {"tiffinfo": {274: number}} if format == "TIFF" else {"exif": exif}
+    PIL.Image.fromarray(texels).save(buffer, format, **more)
+    return buffer.getvalue(), texels
+
+
+@pytest.mark.parametrize("format", ["TIFF", "PNG", "JPEG"])
+@pytest.mark.parametrize("number", range(1, 9))
+def test_texels_are_taken_as_they_are_stored(number: int, format: str) -> None:
+    data, texels = with_orientation(number, format)
+    textures, warnings = shelf()
+    textures.add("a.x", data, "a.x")
+    found = decode_image(textures.textures[0])[..., :3] * 255
+    assert found.shape == texels.shape
+    assert np.abs(found - texels).mean() < 9
+    assert sum("EXIF orientation, which no mesh heeds" in each for each in warnings) == (number > 1)
+
+
+def test_broken_tags_of_an_image_are_no_matter() -> None:
+    data, _ = with_orientation(6, "JPEG")
+    broken = data.replace(b"\x01\x12\0\x03\0\0\0\x01", b"\x01\x12\0\x02\0\0\x09\xff")
+    broken = broken.replace(b"\x12\x01\3\0\1\0\0\0", b"\x12\x01\2\0\xff\x09\0\0")
+    assert broken != data
+    textures, said = shelf()
+    with python_warnings.catch_warnings(action="error"):
+        textures.add("a.jpg", broken, "a.jpg")
+        assert image_bytes(textures.textures[0]).shape == (8, 16, 4)
+        assert image_size(textures.textures[0]) == (16, 8)
+    assert said == []
 
 
 def test_a_texture_that_was_here_from_the_start_is_found() -> None:

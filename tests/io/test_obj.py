@@ -97,7 +97,7 @@ def test_colors_in_comments_are_left_out_with_a_warning(end: str) -> None:
 @pytest.mark.parametrize("words", ["nan nan nan", "0 1.#INF 0", "1e999 0 0", "x", "0 0"])
 def test_a_position_that_no_face_uses_may_be_no_number(words: str) -> None:
     mesh = read(f"v {words}\n" + TRIANGLE + "f 2 3 4\nf -3 -2 -1\n")
-    assert corners(mesh)[0] == [[0, 0, 0], [1, 0, 0], [0, 1, 0]]
+    assert mesh.corners[0].tolist() == [[0, 0, 0], [1, 0, 0], [0, 1, 0]]
     assert mesh.warnings == (
         "a.obj: left out positions that are no finite numbers and that no face uses, "
         "first in line 1",
