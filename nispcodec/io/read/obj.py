@@ -93,8 +93,9 @@ class _Statements:
         }
 
     def parse(self, data: bytes) -> None:
-        paint = _POLYPAINT.search(data)
-        if paint:
+        # Nearly no file has it, and to look for the bare word takes no time.
+        paint = _POLYPAINT.search(data) if b"#MRGB" in data else None
+        if paint is not None:
             self.line = len(data[: paint.end() - 1].splitlines())
             self._leave_out("vertex colors")
         for first, beginning, lines in wavefront.runs(data):

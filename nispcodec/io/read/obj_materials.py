@@ -122,7 +122,7 @@ class MaterialReader:
 
     def _read_library(self, path: Path, place: str) -> dict[str, MtlMaterial]:
         try:
-            return parse_mtl(self._folder.read(path), path.name, self._warnings)
+            return parse_mtl(self._folder.read(path), readable(path.name), self._warnings)
         except MeshError as why:
             self._warnings.append(f"{place}: {why}: left out")
             return {}
@@ -335,7 +335,9 @@ class MaterialReader:
         shared = min(len(known), len(wanted))
         if known[-shared:] != wanted[-shared:]:
             others = repr("/".join(known))
-            self._warn(statement, f"not found, {path.name} is taken for it as for {others}")
+            self._warn(
+                statement, f"not found, {readable(path.name)} is taken for it as for {others}"
+            )
 
     def _warn_of_options(self, statement: MapStatement) -> None:
         for option, values in statement.options.items():
