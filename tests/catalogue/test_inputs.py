@@ -11,6 +11,7 @@ from nispcodec.core.errors import MeshError
 from nispcodec.io.load import load_mesh
 from nispcodec.io.save import write_mesh
 from nispcodec.procedural.mug import sample_asset
+from tests.io.files import image
 
 
 @pytest.fixture
@@ -48,6 +49,20 @@ def test_an_image_that_comes_later_is_a_change(mug: Path) -> None:
     assert unchanged(str(mug), inputs)
     image.write_bytes(data)
     assert not unchanged(str(mug), inputs)
+
+
+@pytest.mark.parametrize("place", ["maps/a.png", "a.png"])
+def test_an_image_that_comes_nearer_to_its_path_is_a_change(tmp_path: Path, place: str) -> None:
+    obj = tmp_path / "a.obj"
+    obj.write_text("mtllib a.mtl\nusemtl m\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
+    (tmp_path / "a.mtl").write_text("newmtl m\nmap_Kd C:\\work\\maps\\a.png\n")
+    if place != "a.png":
+        (tmp_path / "a.png").write_bytes(image())
+    _, inputs, _ = read_noted(str(obj))
+    assert unchanged(str(obj), inputs)
+    (tmp_path / place).parent.mkdir(exist_ok=True)
+    (tmp_path / place).write_bytes(image(color=(0, 9, 0)))
+    assert not unchanged(str(obj), inputs)
 
 
 @pytest.mark.parametrize("suffix", [".obj", ".gltf", ".glb"])
