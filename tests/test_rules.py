@@ -311,6 +311,7 @@ TESTED_ELSEWHERE = {
     "io/read/gltf_nodes.py": "io/test_gltf.py",
     "io/read/obj_materials.py": "io/test_mtl.py",
     "io/read/off.py": "io/test_stl_off.py",
+    "io/read/ply_tables.py": "io/test_ply.py",
     "io/read/stl.py": "io/test_stl_off.py",
     "io/read/wavefront.py": "io/test_obj.py",
     "io/save.py": "io/test_writers.py",
