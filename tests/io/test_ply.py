@@ -36,6 +36,16 @@ def test_text() -> None:
     assert not mesh.has_uv.any()
 
 
+@pytest.mark.parametrize("spelled", ["vertex_index", "vertex_indexes"])
+def test_other_spellings_of_the_list_of_corners(spelled: str) -> None:
+    header = VERTEX + FACE.format(2).replace("vertex_indices", spelled)
+    header += "property list uchar float texcoord\n"
+    body = SQUARE + "3 0 1 2 6 0 0 1 0 1 1\n3 0 2 3 6 0 0 1 1 0 1\n"
+    mesh = read(text(header, body))
+    assert mesh.faces.tolist() == [[0, 1, 2], [0, 2, 3]]
+    assert mesh.corner_uvs[1].tolist() == [[0, 0], [1, 1], [0, 1]]
+
+
 def test_polygons() -> None:
     mesh = read(text(VERTEX + FACE.format(2), SQUARE + "4 0 1 2 3\n3 3 2 1\n"))
     assert len(mesh.faces) == 3
@@ -177,6 +187,16 @@ def test_vertex_colors_are_left_out_with_a_warning() -> None:
         (text("property float x\n", ""), "a.ply:3: expected a PLY header"),
         (text("element vertex 1\nproperty complex x\n", ""), "a.ply:4: expected a PLY header"),
         (text(VERTEX, SQUARE), "expected elements vertex and face"),
+        (
+            text(VERTEX + FACE.format(1).replace("vertex_indices", "loop"), SQUARE + "3 0 1 2"),
+            "a list of vertex indices in element face, one of vertex_indices, vertex_index, "
+            "vertex_indexes, found loop",
+        ),
+        (
+            text(VERTEX + "element tristrips 1\nproperty int vertex_indices\n", SQUARE + "3"),
+            "a list of vertex indices in element tristrips, one of vertex_indices, vertex_index, "
+            "vertex_indexes, found no list",
+        ),
         (text(VERTEX + FACE.format(1), SQUARE), "a.ply: face 0: expected numbers"),
         (
             text(VERTEX + FACE.format(1), SQUARE + "3 0 1 4"),

@@ -20,6 +20,8 @@ from nispcodec.io.read.ply_tables import Element, Header, parse_header, read_ele
 from nispcodec.io.read.polygons import triangulate
 
 _UV_NAMES = (("s", "t"), ("u", "v"), ("texture_u", "texture_v"))
+# The list of a face's corners.
+_CORNERS = ("vertex_indices", "vertex_index", "vertex_indexes")
 _XYZ = ("x", "y", "z")
 _NORMAL = ("nx", "ny", "nz")
 _COLORS = {"red", "diffuse_red", "ambient_red", "r"}
@@ -38,7 +40,7 @@ def read_ply(data: bytes, name: str, folder: Folder) -> TexturedMesh:
     warnings = [f"{place}: left out a line of the header" for place in header.unknown]
     has_strips = "tristrips" in elements and (face is None or not face.count)
     if has_strips:
-        face = _without_strips(elements["tristrips"])
+        face = _without_strips(elements["tristrips"], name)
     if vertex is None or face is None:
         raise MeshError(f"{name}: expected elements vertex and face, found {list(elements)}")
     used = {"vertex", "tristrips" if has_strips else "face"}
@@ -51,9 +53,20 @@ def read_ply(data: bytes, name: str, folder: Folder) -> TexturedMesh:
     return _assembled(vertex, face, materials, textures, warnings, name)
 
 
-def _without_strips(strips: Element) -> Element:
+def _corner_lists(table: Element, name: str) -> list[Sequence[float]]:
+    """The vertex indices of each face or strip."""
+    known = [each for each in _CORNERS if each in table.lists]
+    if not known and table.count:
+        raise MeshError(
+            f"{name}: expected a list of vertex indices in element {table.name}, one of "
+            f"{', '.join(_CORNERS)}, found {', '.join(table.lists) or 'no list'}"
+        )
+    return table.lists[known[0]] if known else []
+
+
+def _without_strips(strips: Element, name: str) -> Element:
     """Strips, with -1 between them, as faces: every second triangle is the other way round."""
-    listed = strips.lists.get("vertex_indices") or strips.lists.get("vertex_index") or []
+    listed = _corner_lists(strips, name)
     flat = np.array([index for strip in listed for index in (*strip, -1)], dtype=np.float64)
     place = np.arange(len(flat))
     since = place - np.maximum.accumulate(np.where(flat < 0, place + 1, 0))
@@ -98,7 +111,7 @@ def _assembled(
     name: str,
 ) -> TexturedMesh:
     positions = _positions(vertex, name)
-    polygons = face.lists.get("vertex_indices") or face.lists.get("vertex_index") or []
+    polygons = _corner_lists(face, name)
     sizes = np.array([len(polygon) for polygon in polygons], dtype=np.int64)
     corners = _flat_indices(polygons, len(positions), name)
     uvs, corner_uvs = _uvs(vertex, face, corners, sizes, name, warnings)
