@@ -101,6 +101,22 @@ def test_colors_are_left_out_by_name(owner: str, name: str) -> None:
     assert mesh.warnings == (f"a.ply: left out {owner} colors",)
 
 
+def test_alpha_alone_and_colors_of_corners_are_left_out_by_name() -> None:
+    header = VERTEX + "property uchar alpha\n" + FACE.format(1)
+    header += "property list uchar float color\n"
+    body = SQUARE.replace("\n", " 7\n") + "3 0 1 2 9 1 0 0 1 0 0 1 0 0\n"
+    assert read(text(header, body)).warnings == (
+        "a.ply: left out vertex property 'alpha'",
+        "a.ply: left out face property 'color'",
+    )
+
+
+def test_what_else_strips_hold_is_said() -> None:
+    strips = "element tristrips 1\nproperty list int int vertex_indices\nproperty int group\n"
+    mesh = read(text(VERTEX + strips, SQUARE + "4 0 1 2 3 7"))
+    assert mesh.warnings == ("a.ply: left out tristrips property 'group'",)
+
+
 def test_a_line_of_the_header_without_a_keyword_is_left_out_with_a_warning() -> None:
     header = "Created by a tool - www.example.org\n" + VERTEX + FACE.format(1)
     mesh = read(text(header, SQUARE + "3 0 1 2\n"))
@@ -147,14 +163,80 @@ def test_binary_with_columns_we_do_not_know(format: str, order: str) -> None:
     mesh = read(text(header, "", f"binary_{format}_endian") + body)
     assert mesh.positions.tolist() == CORNERS
     assert len(mesh.faces) == 2
+    assert mesh.warnings == (
+        "a.ply: left out element 'edge'",
+        "a.ply: left out vertex property 'quality'",
+        "a.ply: left out face property 'flags'",
+    )
 
 
-@pytest.mark.parametrize("names", [("s", "t"), ("u", "v"), ("texture_u", "texture_v")])
+@pytest.mark.parametrize(
+    "names",
+    [
+        ("s", "t"),
+        ("u", "v"),
+        ("texture_u", "texture_v"),
+        ("texture_s", "texture_t"),
+        ("s0", "t0"),
+        ("u0", "v0"),
+        ("tu", "tv"),
+        ("tx", "ty"),
+    ],
+)
 def test_vertex_uvs(names: tuple[str, str]) -> None:
     header = VERTEX + "".join(f"property float {name}\n" for name in names) + FACE.format(1)
     body = "0 0 0 .5 0\n1 0 0 1 .25\n1 1 0 0 7\n0 1 0 0 0\n3 0 1 2\n"
     mesh = read(text(header, body))
     assert mesh.corner_uvs[0].tolist() == [[0.5, 0], [1, 0.25], [0, 7]]
+    assert mesh.warnings == ()
+
+
+@pytest.mark.parametrize("textured", [False, True])
+def test_tangents_are_no_uvs(textured: bool) -> None:
+    names = ("s", "t") if textured else ()
+    header = VERTEX + "".join(f"property float {name}\n" for name in (*names, "tx", "ty", "tz"))
+    row = f" {'.5 .5 ' if textured else ''}0 1 0\n"
+    mesh = read(text(header + FACE.format(1), SQUARE.replace("\n", row) + "3 0 1 2\n"))
+    assert mesh.has_uv.all() == textured
+    assert mesh.warnings == ("a.ply: left out vertex properties 'tx', 'ty', 'tz'",)
+
+
+@pytest.mark.parametrize("listed", ["texcoord", "texcoords", "texture_coords", "uv"])
+def test_corner_uvs_by_other_names(listed: str) -> None:
+    header = VERTEX + FACE.format(1) + f"property list uchar float {listed}\n"
+    mesh = read(text(header, SQUARE + "3 0 1 2 6 0 0 1 0 1 .25\n"))
+    assert mesh.corner_uvs[0].tolist() == [[0, 0], [1, 0], [1, 0.25]]
+    assert mesh.warnings == ()
+
+
+def two_images(folder: Path, vertex: str, face: str, body: str) -> TexturedMesh:
+    for name, color in (("red.png", (255, 0, 0)), ("green.png", (0, 255, 0))):
+        (folder / name).write_bytes(image(color=color))
+    names = "comment TextureFile red.png\ncomment TextureFile green.png\n"
+    return read(text(names + VERTEX + vertex + FACE.format(2) + face, body), Folder(folder))
+
+
+def test_vertices_may_say_the_texture_of_their_faces(tmp_path: Path) -> None:
+    columns = "property float u\nproperty float v\nproperty int texnumber\n"
+    rows = ["0 0 0 0 0 1", "1 0 0 1 0 1", "1 1 0 1 1 1", "0 1 0 0 1 0", "3 3 1 2", "3 0 1 2"]
+    mesh = two_images(tmp_path, columns, "", "\n".join(rows))
+    assert mesh.face_materials.tolist() == [0, 1]
+    assert mesh.warnings == (
+        "a.ply: face 0: expected one texnumber of all its vertices, found several: "
+        "1 face as their first vertex",
+    )
+
+
+def test_images_that_no_face_shows_are_said(tmp_path: Path) -> None:
+    lists = "property list uchar float texcoord\n"
+    body = SQUARE + "3 0 1 2 6 0 0 1 0 1 1\n3 0 2 3 6 0 0 1 1 0 1\n"
+    assert two_images(tmp_path, "", lists, body).warnings == (
+        "a.ply: left out image 'green.png': no face with texture coordinates has its texnumber",
+    )
+    assert two_images(tmp_path, "", "", SQUARE + "3 0 1 2\n3 0 2 3\n").warnings == (
+        "a.ply: left out image 'red.png': no face has texture coordinates",
+        "a.ply: left out image 'green.png': no face has texture coordinates",
+    )
 
 
 def test_corner_uvs_and_their_textures(tmp_path: Path) -> None:

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import re
+from collections.abc import Container, Iterator, Sequence
 from pathlib import Path, PurePath
 
 import numpy as np
 
 from nispcodec.core.arrays import Float64Array, Int64Array
 from nispcodec.core.asset import Material, Texture, TexturedMesh, TextureMap
+from nispcodec.core.counted import counted
 from nispcodec.core.errors import MeshError
 from nispcodec.io.folder import Folder
 from nispcodec.io.images import TextureShelf
@@ -19,12 +21,18 @@ from nispcodec.io.read.normals import with_creases
 from nispcodec.io.read.ply_tables import Element, Header, parse_header, read_elements
 from nispcodec.io.read.polygons import triangulate
 
-_UV_NAMES = (("s", "t"), ("u", "v"), ("texture_u", "texture_v"))
+# As MeshLab, Blender, VTK and Assimp have them, and others.
+_UV_NAMES = (
+    ("s", "t"), ("u", "v"), ("texture_u", "texture_v"), ("texture_s", "texture_t"),
+    ("s0", "t0"), ("u0", "v0"), ("tu", "tv"), ("tx", "ty"),
+)  # fmt: skip
+_UV_LISTS = ("texcoord", "texcoords", "texture_coords", "uv")
 # The list of a face's corners.
 _CORNERS = ("vertex_indices", "vertex_index", "vertex_indexes")
 _XYZ = ("x", "y", "z")
 _NORMAL = ("nx", "ny", "nz")
 _COLORS = {"red", "diffuse_red", "ambient_red", "r"}
+_CHANNEL = re.compile(r"(\w+_)?(red|green|blue|alpha)|[rgba]")
 
 
 def read_ply(data: bytes, name: str, folder: Folder) -> TexturedMesh:
@@ -47,15 +55,14 @@ def read_ply(data: bytes, name: str, folder: Folder) -> TexturedMesh:
     others = [each.name for each in header.elements if each.count and each.name not in used]
     warnings.extend(f"{name}: left out element {other!r}" for other in others)
     for element in (vertex, face):
-        if _COLORS & element.columns.keys():
-            warnings.append(f"{name}: left out {element.name} colors")
+        warnings.extend(_unread(element, _read_names(element, face), name))
     materials, textures = _materials(header, name, folder, warnings)
     return _assembled(vertex, face, materials, textures, warnings, name)
 
 
 def _corner_lists(table: Element, name: str) -> list[Sequence[float]]:
     """The vertex indices of each face or strip."""
-    known = [each for each in _CORNERS if each in table.lists]
+    known = _first(_CORNERS, table.lists)
     if not known and table.count:
         raise MeshError(
             f"{name}: expected a list of vertex indices in element {table.name}, one of "
@@ -73,7 +80,35 @@ def _without_strips(strips: Element, name: str) -> Element:
     first = np.flatnonzero((since[2:] >= 2) & (flat[2:] >= 0))
     odd = since[first + 2] % 2
     faces = flat[np.stack([first, first + 1 + odd, first + 2 - odd], axis=1)]
-    return Element("face", len(faces), lists={"vertex_indices": faces.tolist()})
+    others = [each for each in strips.properties if each.name not in _CORNERS]
+    return Element(strips.name, len(faces), others, lists={"vertex_indices": faces.tolist()})
+
+
+def _read_names(element: Element, face: Element) -> set[str]:
+    """The properties of the vertices or the faces that a mesh is made of."""
+    if element is face:
+        number = _first(("texnumber",), face.columns)
+        return {*_first(_CORNERS, face.lists), *_first(_UV_LISTS, face.lists), *number}
+    normal = _NORMAL if set(_NORMAL) <= element.columns.keys() else ()
+    uvs = () if _first(_UV_LISTS, face.lists) else _uv_names(element)
+    number = () if "texnumber" in face.columns else ("texnumber",)
+    return {*_XYZ, *normal, *uvs, *number}
+
+
+def _unread(element: Element, read: set[str], name: str) -> Iterator[str]:
+    """Warnings of the other properties; those of colors are told as one thing."""
+    others = [each.name for each in element.properties if each.name not in read]
+    if _COLORS & element.columns.keys():
+        yield f"{name}: left out {element.name} colors"
+        others = [each for each in others if not _CHANNEL.fullmatch(each)]
+    if others:
+        kind = "property" if len(others) == 1 else "properties"
+        yield f"{name}: left out {element.name} {kind} {', '.join(map(repr, others))}"
+
+
+def _first(names: tuple[str, ...], lists: Container[str]) -> tuple[str, ...]:
+    """The first of the names that is there, alone; none where none is."""
+    return tuple(each for each in names if each in lists)[:1]
 
 
 def _materials(
@@ -115,7 +150,8 @@ def _assembled(
     sizes = np.array([len(polygon) for polygon in polygons], dtype=np.int64)
     corners = _flat_indices(polygons, len(positions), name)
     uvs, corner_uvs = _uvs(vertex, face, corners, sizes, name, warnings)
-    numbers = _face_materials(face, len(sizes), len(materials), name, warnings)
+    texnumbers = _texnumbers(vertex, face, corners, sizes, name, warnings)
+    numbers = _face_materials(texnumbers, len(materials), name, warnings)
     if not materials or (numbers == len(materials)).any():
         materials = (*materials, Material())
     whole = sizes >= 3
@@ -126,6 +162,8 @@ def _assembled(
         sizes, numbers = sizes[whole], numbers[whole]
     triangles, owner = triangulate(positions[corners], sizes)
     uvs, uv_faces = without_unusable(uvs, corner_uvs[triangles], name, warnings)
+    shown = np.unique(numbers[owner[(uv_faces >= 0).all(axis=1)]])
+    warnings.extend(_hidden_images(materials, textures, shown.tolist(), name))
     mesh = TexturedMesh(
         positions=positions,
         faces=corners[triangles].astype(np.int32),
@@ -185,13 +223,21 @@ def _uvs(
     warnings: list[str],
 ) -> tuple[Float64Array, Int64Array]:
     """UVs and each corner's index: the faces' own where they have them, else the vertices'."""
-    listed = face.lists.get("texcoord")
-    if listed is not None:
-        return _corner_uvs(listed, sizes, name, warnings)
-    for names in _UV_NAMES:
-        if set(names) <= set(vertex.columns):
-            return _columns(vertex, names, name), corners
+    for listed in _first(_UV_LISTS, face.lists):
+        return _corner_uvs(face.lists[listed], sizes, name, warnings)
+    names = _uv_names(vertex)
+    if names:
+        return _columns(vertex, names, name), corners
     return np.zeros((0, 2)), np.full(len(corners), -1)
+
+
+def _uv_names(vertex: Element) -> tuple[str, ...]:
+    """The columns of the vertices' UVs, none where there are none."""
+    for names in _UV_NAMES:
+        is_tangent = "tx" in names and "tz" in vertex.columns
+        if set(names) <= vertex.columns.keys() and not is_tangent:
+            return names
+    return ()
 
 
 def _corner_uvs(
@@ -213,18 +259,55 @@ def _corner_uvs(
     return flat.reshape(-1, 2), np.where(has_uv, np.cumsum(has_uv) - 1, -1)
 
 
+def _texnumbers(
+    vertex: Element,
+    face: Element,
+    corners: Int64Array,
+    sizes: Int64Array,
+    name: str,
+    warnings: list[str],
+) -> Float64Array:
+    """Which image each face shows, the first where nothing says it: as MeshLab numbers them.
+
+    Vertices may say it in place of their faces, which go by their first corner.
+    """
+    if "texnumber" in face.columns:
+        return np.array(face.columns["texnumber"], dtype=np.float64)
+    if "texnumber" not in vertex.columns:
+        return np.zeros(len(sizes))
+    by_corner = np.array(vertex.columns["texnumber"], dtype=np.float64)[corners]
+    ends = np.cumsum(sizes)
+    by_face = np.append(by_corner, -1)[np.minimum(ends - sizes, len(corners))]
+    owner = np.repeat(np.arange(len(sizes)), sizes)
+    mixed = np.unique(owner[by_corner != by_face[owner]])
+    if mixed.size:
+        warnings.append(
+            f"{name}: face {mixed[0]}: expected one texnumber of all its vertices, found several: "
+            f"{counted(mixed.size, 'face')} as their first vertex"
+        )
+    return by_face
+
+
 def _face_materials(
-    face: Element, faces: int, materials: int, name: str, warnings: list[str]
+    texnumbers: Float64Array, materials: int, name: str, warnings: list[str]
 ) -> Int64Array:
-    """MeshLab numbers the textures; -1 is none. A file without textures has material 0."""
-    numbers = face.columns.get("texnumber")
-    if numbers is None:
-        return np.zeros(faces, dtype=np.int64)
-    chosen = np.array(numbers, dtype=np.float64)
-    known = chosen < max(materials, 1)
+    """The material of each face: -1 is none. A file without textures has material 0."""
+    known = texnumbers < max(materials, 1)
     if not known.all():
         warnings.append(
             f"{name}: face {int(known.argmin())}: expected a texnumber below {materials}, found "
-            f"{chosen[known.argmin()]:g}: left out those of {(~known).sum()} face(s)"
+            f"{texnumbers[known.argmin()]:g}: left out those of {(~known).sum()} face(s)"
         )
-    return np.where(known & (chosen >= 0), chosen, materials).astype(np.int64)
+    return np.where(known & (texnumbers >= 0), texnumbers, materials).astype(np.int64)
+
+
+def _hidden_images(
+    materials: tuple[Material, ...], textures: tuple[Texture, ...], shown: list[int], name: str
+) -> Iterator[str]:
+    """Warnings of the images that no face shows, `shown` being the materials of faces with UVs."""
+    maps = [materials[each].maps.get("base_color") for each in shown]
+    used = {each.texture for each in maps if each is not None}
+    why = "with texture coordinates has its texnumber" if shown else "has texture coordinates"
+    for place, texture in enumerate(textures):
+        if place not in used:
+            yield f"{name}: left out image {texture.name!r}: no face {why}"
