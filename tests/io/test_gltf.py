@@ -309,6 +309,25 @@ def test_a_face_with_unusable_uvs_has_none(tmp_path: Path, unusable: bytes) -> N
     assert "texture coordinates of 1 face(s) are no finite numbers" in mesh.warnings[0]
 
 
+def test_an_unusable_position_that_no_face_has_costs_itself_alone(tmp_path: Path) -> None:
+    gltf = Gltf()
+    moves = [(0, 0, 1), (0, 0, 1), (math.nan, 0, 0), (0, 0, 1)]
+    primitive = {
+        "attributes": {"POSITION": gltf.accessor([*CORNERS[:2], (0, math.inf, 0), CORNERS[2]])},
+        "indices": gltf.accessor([0, 1, 3], "u1"),
+        "targets": [{"POSITION": gltf.accessor(moves)}],
+    }
+    gltf.scene([primitive, primitive])
+    gltf.json["meshes"][0]["weights"] = [1]
+    mesh = gltf.load(tmp_path)
+    assert mesh.corners[0].tolist() == [[x, y, 1] for x, y, _ in CORNERS]
+    said = "left out 1 vertex without finite coordinates, which no face has"
+    assert mesh.warnings[:2] == (f"a.glb: accessors[0]: {said}", f"a.glb: accessors[2]: {said}")
+    primitive["indices"] = gltf.accessor([0, 1, 2], "u1")
+    with pytest.raises(MeshError, match=r"accessors\[0\]: expected finite numbers in element 2"):
+        gltf.load(tmp_path)
+
+
 def test_factors_that_are_not_finite_are_left_out(tmp_path: Path) -> None:
     gltf = textured(emissiveFactor=[math.inf, 0, 0])
     gltf.json["materials"][0]["pbrMetallicRoughness"]["metallicFactor"] = math.nan

@@ -146,6 +146,16 @@ def test_an_unreadable_image_is_left_out(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("unusable", ["nan", "inf", "-nan(ind)", "1.#QNAN"])
+def test_an_unusable_position_that_no_face_has_costs_itself_alone(unusable: str) -> None:
+    body = SQUARE.replace("0 1 0", f"0 {unusable} 0") + "3 0 1 2\n"
+    mesh = read(text(VERTEX + FACE.format(1), body))
+    assert mesh.corners.tolist() == [CORNERS[:3]]
+    assert mesh.warnings == (
+        "a.ply: left out 1 vertex without finite coordinates, which no face has",
+    )
+
+
+@pytest.mark.parametrize("unusable", ["nan", "inf", "-nan(ind)", "1.#QNAN"])
 def test_a_face_with_unusable_uvs_has_none(unusable: str) -> None:
     header = VERTEX + "property float s\nproperty float t\n" + FACE.format(2)
     body = f"0 0 0 0 0\n1 0 0 1 0\n1 1 0 1 1\n0 1 0 0 {unusable}\n3 0 1 2\n3 0 2 3\n"
@@ -291,7 +301,10 @@ def test_vertex_colors_are_left_out_with_a_warning() -> None:
         ),
         (text(VERTEX + VERTEX + FACE.format(1), SQUARE), "elements: expected different names"),
         (text(VERTEX + FACE.format(1), SQUARE + "-3 0 1"), "face 0: expected numbers"),
-        (text(VERTEX + FACE.format(0), "0 0 0 0 nan 0 0 0 0 1 1 1"), "vertex 1: expected finite"),
+        (
+            text(VERTEX + FACE.format(1), "0 0 0 0 nan 0 0 0 0 1 1 1 3 0 1 2"),
+            "vertex 1: expected finite",
+        ),
         (text(VERTEX + FACE.format(0), "0 0 0 0 zero 0"), "vertex 1: expected numbers"),
         (text(VERTEX.replace(" y", " why") + FACE.format(0), SQUARE), "expected vertex properties"),
         (text(VERTEX, "", "binary_little_endian") + b"\0" * 40, "vertex 3: expected numbers"),

@@ -169,6 +169,14 @@ def test_the_keyword_of_off_may_be_missing() -> None:
     assert off(OFF.replace(b"OFF\n", b"")).corners.tolist() == off(OFF).corners.tolist()
 
 
+def test_an_unusable_position_that_no_face_has_costs_itself_alone() -> None:
+    mesh = off(b"OFF\n4 1 0\n0 0 0\nnan 0 0\n1 0 0\n0 1 0\n3 0 2 3\n")
+    assert mesh.corners.tolist() == [CORNERS]
+    assert mesh.warnings == (
+        "a.off: left out 1 vertex without finite coordinates, which no face has",
+    )
+
+
 def test_normals_of_off_are_creases() -> None:
     faces = b"3 0 1 2\n3 0 2 3\n"
     rows = [b"0 0 0", b"1 0 0", b"1 1 0", b"0 1 1"]

@@ -1,10 +1,31 @@
-"""Texture coordinates as exporters leave them: unusable ones cost their faces, not the asset."""
+"""Coordinates as exporters leave them: unusable ones cost what uses them, not the asset."""
 
 from __future__ import annotations
 
 import numpy as np
 
 from nispcodec.core.arrays import BoolArray, Float64Array, Int64Array, IntArray
+from nispcodec.core.counted import counted
+
+
+def without_unused(
+    positions: Float64Array, corners: IntArray, place: str, warnings: list[str]
+) -> Float64Array:
+    """The same positions (n, 3), rows of NaN or infinity 0 where no corner (k,) uses them.
+
+    A new warning, naming the `place`, counts these. Rows that are used stay as they are.
+    """
+    unused: BoolArray = np.logical_not(np.isfinite(positions).all(axis=1))
+    unused[corners] = False
+    if not unused.any():
+        return positions
+    said = (
+        f"{place}: left out {counted(int(unused.sum()), 'vertex')} "
+        f"without finite coordinates, which no face has"
+    )
+    if said not in warnings:
+        warnings.append(said)
+    return np.where(unused[:, None], 0.0, positions)
 
 
 def without_unusable(

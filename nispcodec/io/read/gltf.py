@@ -129,10 +129,12 @@ class _Scene:
             self._warn(f"{primitive.place}: left out, not a primitive of triangles")
             return
         unpacked = self._draco.unpack(primitive)  # before anything asks for its accessors
-        first, count = self._place_positions(primitive, shown, number)
         if unpacked is not None:
             mode = _TRIANGLES  # whatever they were before
-        once = _triangles(self._corner_indices(primitive, unpacked, count, mode), mode)
+        count = self._buffers.count(attributes.integer("POSITION"), 3)
+        corners = self._corner_indices(primitive, unpacked, count, mode)
+        first = self._place_positions(primitive, shown, number, corners)
+        once = _triangles(corners, mode)
         self._expect_moderate(primitive, len(shown.matrices) * len(once))
         faces = np.concatenate([np.zeros((0, 3), np.int64), *_turned(once, shown)])
         starts = first + count * np.arange(len(shown.matrices))
@@ -193,37 +195,50 @@ class _Scene:
             return None
         return rows
 
-    def _place_positions(self, primitive: Element, shown: Shown, number: int) -> tuple[int, int]:
-        """First row and number of rows; primitives of a node often share an accessor."""
+    def _place_positions(
+        self, primitive: Element, shown: Shown, number: int, corners: Int64Array
+    ) -> int:
+        """The first row; primitives of a node often share an accessor."""
         attributes = primitive.need("attributes")
         accessor = attributes.integer("POSITION")
         morphed = primitive.path if any(shown.weights) else ""
         key = (number, accessor, *_influences(attributes), morphed)
-        local = self._buffers.numbers(accessor, 3)
+        local = self._buffers.used_numbers(accessor, corners, self._warnings)
         self._expect_moderate(primitive, len(shown.matrices) * len(local))
         if key not in self._positions.starts:
-            local = self._morphed(primitive, local, shown.weights)
+            local = self._morphed(primitive, local, shown.weights, corners)
             if shown.skin is not None:
                 local = self._skinned(attributes, local, shown.skin)
             world = _transformed(local, shown.matrices)
             if not np.isfinite(world).all():
                 attributes.fail("finite world coordinates", "overflow in node transforms")
             self._positions.add(key, world)
-        return self._positions.starts[key], len(local)
+        return self._positions.starts[key]
 
     def _morphed(
-        self, primitive: Element, local: Float64Array, weights: Sequence[float]
+        self,
+        primitive: Element,
+        local: Float64Array,
+        weights: Sequence[float],
+        corners: Int64Array,
     ) -> Float64Array:
         """Positions (n, 3) with the morph targets at the weights of the file."""
         for target, weight in zip(primitive.entries("targets"), weights, strict=False):
             accessor = target.optional("POSITION")
             if accessor is None or not weight:
                 continue
-            moves = self._buffers.numbers(accessor, 3)
-            if len(moves) != len(local):
-                target.fail(f"{len(local)} positions", len(moves))
+            moves = self._moves(target, accessor, len(local), corners)
             local = local + weight * moves
         return local
+
+    def _moves(
+        self, target: Element, accessor: int, count: int, corners: Int64Array
+    ) -> Float64Array:
+        """(count, 3) of a morph target."""
+        found = self._buffers.count(accessor, 3)
+        if found != count:
+            target.fail(f"{count} positions", found)
+        return self._buffers.used_numbers(accessor, corners, self._warnings)
 
     def _skinned(
         self, attributes: Element, local: Float64Array, matrices: Float64Array

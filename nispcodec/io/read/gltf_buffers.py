@@ -13,6 +13,7 @@ import numpy as np
 from nispcodec.core.arrays import AnyArray, Float64Array, Int64Array
 from nispcodec.core.errors import MeshError
 from nispcodec.io.folder import Folder
+from nispcodec.io.read.coordinates import without_unused
 from nispcodec.io.read.gltf_json import Element
 from nispcodec.io.read.gltf_meshopt import compression, decompress
 
@@ -149,15 +150,28 @@ class Buffers:
         """
         accessor = self._root.entry("accessors", index)
         values = self._values(index, accessor, width)
-        usable = np.isfinite(values).all(axis=1)
-        if finite and not usable.all():
-            element = int(usable.argmin())
-            accessor.fail(f"finite numbers in element {element}", values[element].tolist())
+        if finite:
+            _expect_finite(accessor, values)
         with np.errstate(invalid="ignore"):  # signaling NaN
             numbers = values.astype(np.float64)
         if accessor.flag("normalized") and values.dtype.kind in "iu":
             numbers = np.maximum(numbers / np.iinfo(values.dtype).max, -1.0)
         return numbers
+
+    def count(self, index: int, width: int) -> int:
+        """How many elements of so many numbers accessor `index` has."""
+        return len(self._values(index, self._root.entry("accessors", index), width))
+
+    def used_numbers(self, index: int, corners: Int64Array, warnings: list[str]) -> Float64Array:
+        """Accessor `index` as (n, 3) finite numbers; 0 where only rows without `corners` are not.
+
+        These are said in new `warnings`.
+        """
+        accessor = self._root.entry("accessors", index)
+        rows = self.numbers(index, 3, finite=False)
+        rows = without_unused(rows, corners, accessor.place, warnings)
+        _expect_finite(accessor, rows)
+        return rows
 
     def indices(self, index: int) -> Int64Array:
         """Accessor `index`, which holds unsigned integers, as (n,) int64."""
@@ -227,6 +241,13 @@ class Buffers:
         filled = base.copy()
         filled[places] = self._elements(values, count, base.dtype, base.shape[1])
         return filled
+
+
+def _expect_finite(accessor: Element, values: AnyArray) -> None:
+    usable = np.isfinite(values).all(axis=1)
+    if not usable.all():
+        element = int(usable.argmin())
+        accessor.fail(f"finite numbers in element {element}", values[element].tolist())
 
 
 def _as_stated(accessor: Element, values: AnyArray, width: int) -> AnyArray:

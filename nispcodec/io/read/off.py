@@ -14,7 +14,7 @@ from nispcodec.core.asset import TexturedMesh
 from nispcodec.core.errors import MeshError
 from nispcodec.io.folder import Folder
 from nispcodec.io.read import wavefront
-from nispcodec.io.read.coordinates import without_unusable
+from nispcodec.io.read.coordinates import without_unusable, without_unused
 from nispcodec.io.read.normals import with_creases
 from nispcodec.io.read.polygons import triangulate
 
@@ -32,7 +32,8 @@ def read_off(data: bytes, name: str, folder: Folder) -> TexturedMesh:
     lines = wavefront.logical_lines(data)
     kind, vertices, faces = _head(lines, name)
     said = _LeftOut(name)
-    positions, normals, uvs = _vertices(lines, vertices, kind, said)
+    unusable: dict[int, str] = {}
+    positions, normals, uvs = _vertices(lines, vertices, kind, said, unusable)
     sizes, corners = [], []
     for number, line in _take(lines, faces, f"{name}: expected {faces} faces"):
         face, others = _face(line.split(), vertices, f"{name}:{number}")
@@ -42,6 +43,8 @@ def read_off(data: bytes, name: str, folder: Folder) -> TexturedMesh:
             sizes.append(len(face))
             corners.extend(face)
     indices = np.array(corners, dtype=np.int64)
+    _expect_unused(unusable, corners)
+    positions = without_unused(positions, indices, name, said.warnings)
     triangles, _ = triangulate(positions[indices], np.array(sizes, dtype=np.int64))
     mesh = TexturedMesh.geometry_only(positions, indices[triangles], name)
     if uvs is not None:
@@ -65,18 +68,20 @@ class _LeftOut:
 
 
 def _vertices(
-    lines: Lines, count: int, kind: bytes, said: _LeftOut
+    lines: Lines, count: int, kind: bytes, said: _LeftOut, unusable: dict[int, str]
 ) -> tuple[Float64Array, Float64Array | None, Float64Array | None]:
     """Positions (n, 3), and normals (n, 3) and UVs (n, 2) where the `kind` has them.
 
-    A line is x y z [normal] [color] [s t].
+    A line is x y z [normal] [color] [s t]. Why a position that is not finite is no position comes
+    into `unusable`, by its index: faces may do without it.
     """
-    rows, normals, uvs = [], [], []
+    rows: list[list[float]] = []
+    normals, uvs = [], []
     textured, shaded = kind.startswith(b"ST"), b"N" in kind
     known = 3 + 3 * shaded + 2 * textured
     for number, line in _take(lines, count, f"{said.name}: expected {count} vertices"):
         words, place = line.split(), f"{said.name}:{number}"
-        rows.append(wavefront.numbers(words[:3], 3, place))
+        rows.append(_position(words[:3], place, len(rows), unusable))
         if shaded:
             normals.append(_numbers(words[3:6], 3, place))
         if textured:
@@ -87,6 +92,23 @@ def _vertices(
         np.array(normals, dtype=np.float64).reshape(-1, 3) if shaded else None,
         np.array(uvs, dtype=np.float64).reshape(-1, 2) if textured else None,
     )
+
+
+def _position(words: list[bytes], place: str, index: int, unusable: dict[int, str]) -> list[float]:
+    """Three numbers; NaN where they are not finite. Raises MeshError where they are none."""
+    try:
+        return wavefront.numbers(words, 3, place)
+    except MeshError as why:
+        if len(words) < 3 or not wavefront.not_finite(words):
+            raise
+        unusable[index] = str(why)
+        return [math.nan] * 3
+
+
+def _expect_unused(unusable: dict[int, str], corners: list[int]) -> None:
+    used = unusable.keys() & set(corners) if unusable else set()
+    if used:
+        raise MeshError(unusable[min(used)])
 
 
 def _numbers(words: list[bytes], count: int, place: str) -> list[float]:

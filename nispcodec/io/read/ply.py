@@ -15,7 +15,7 @@ from nispcodec.core.errors import MeshError
 from nispcodec.io.folder import Folder
 from nispcodec.io.images import TextureShelf
 from nispcodec.io.read import wavefront
-from nispcodec.io.read.coordinates import without_unusable
+from nispcodec.io.read.coordinates import without_unusable, without_unused
 from nispcodec.io.read.names import material_name
 from nispcodec.io.read.normals import with_creases
 from nispcodec.io.read.ply_tables import Element, Header, parse_header, read_elements
@@ -145,10 +145,10 @@ def _assembled(
     warnings: list[str],
     name: str,
 ) -> TexturedMesh:
-    positions = _positions(vertex, name)
     polygons = _corner_lists(face, name)
     sizes = np.array([len(polygon) for polygon in polygons], dtype=np.int64)
-    corners = _flat_indices(polygons, len(positions), name)
+    corners = _flat_indices(polygons, vertex.count, name)
+    positions = _positions(vertex, corners, name, warnings)
     uvs, corner_uvs = _uvs(vertex, face, corners, sizes, name, warnings)
     texnumbers = _texnumbers(vertex, face, corners, sizes, name, warnings)
     numbers = _face_materials(texnumbers, len(materials), name, warnings)
@@ -179,9 +179,11 @@ def _assembled(
     return with_creases(mesh, _columns(vertex, _NORMAL, name)[mesh.faces])
 
 
-def _positions(vertex: Element, name: str) -> Float64Array:
+def _positions(
+    vertex: Element, corners: Int64Array, name: str, warnings: list[str]
+) -> Float64Array:
     """(n, 3) finite numbers."""
-    values = _columns(vertex, _XYZ, name)
+    values = without_unused(_columns(vertex, _XYZ, name), corners, name, warnings)
     finite = np.isfinite(values).all(axis=1)
     if not finite.all():
         row = int(finite.argmin())
