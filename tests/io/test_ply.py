@@ -97,7 +97,9 @@ def test_colors_are_left_out_by_name(owner: str, name: str) -> None:
     color = f"property uchar {name}\n"
     vertex, face = (color if owner == each else "" for each in ("vertex", "face"))
     body = SQUARE.replace("\n", " 7\n") if vertex else SQUARE
-    mesh = read(text(VERTEX + vertex + FACE.format(1) + face, f"{body}3 0 1 2 7\n"))
+    mesh = read(
+        text(VERTEX + vertex + FACE.format(1) + face, f"{body}3 0 1 2{' 7' if face else ''}\n")
+    )
     assert mesh.warnings == (f"a.ply: left out {owner} colors",)
 
 
@@ -109,6 +111,18 @@ def test_alpha_alone_and_colors_of_corners_are_left_out_by_name() -> None:
         "a.ply: left out vertex property 'alpha'",
         "a.ply: left out face property 'color'",
     )
+
+
+def test_what_comes_after_the_last_row_is_said() -> None:
+    header = VERTEX + FACE.format(1)
+    said = "after the last row of the header's elements"
+    mesh = read(text(header, SQUARE + "3 0 1 2\n3 0 2 3\n"))
+    assert mesh.faces.tolist() == [[0, 1, 2]]
+    assert mesh.warnings == (f"a.ply: left out 4 numbers {said}",)
+    body = np.array(CORNERS, "<f4").tobytes() + struct.pack("<B3i", 3, 0, 1, 2)
+    whole = text(header, "", "binary_little_endian") + body
+    assert read(whole).warnings == ()
+    assert read(whole + b"tail\n").warnings == (f"a.ply: left out 5 bytes {said}",)
 
 
 def test_what_else_strips_hold_is_said() -> None:

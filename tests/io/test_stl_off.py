@@ -157,6 +157,7 @@ def test_off_texture_coordinates() -> None:
             OFF.replace(b"4 1 0", b"4 3 0").replace(b"4 0 1 2", b"2 0 1\n0\n4 0 1 2"),
             "faces of fewer than three corners",
         ),
+        (OFF + b"3 0 1 2\n3 1 2 3\n", "lines after the last face"),
     ],
 )
 def test_what_off_loses_is_said(data: bytes, what: str) -> None:

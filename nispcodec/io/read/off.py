@@ -42,6 +42,7 @@ def read_off(data: bytes, name: str, folder: Folder) -> TexturedMesh:
         if len(face) > 2:
             sizes.append(len(face))
             corners.extend(face)
+    said.add("lines after the last face", sum(1 for _ in lines))
     indices = np.array(corners, dtype=np.int64)
     _expect_unused(unusable, corners)
     positions = without_unused(positions, indices, name, said.warnings)

@@ -42,10 +42,11 @@ def read_ply(data: bytes, name: str, folder: Folder) -> TexturedMesh:
     """
     data = data.removeprefix(wavefront.BYTE_ORDER_MARK)
     header = parse_header(data, name)
-    read_elements(header, data, name)
+    after = read_elements(header, data, name)
     elements = {element.name: element for element in header.elements}
     vertex, face = elements.get("vertex"), elements.get("face")
     warnings = [f"{place}: left out a line of the header" for place in header.unknown]
+    warnings.extend(after)
     has_strips = "tristrips" in elements and (face is None or not face.count)
     if has_strips:
         face = _without_strips(elements["tristrips"], name)

@@ -8,6 +8,7 @@ import struct
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
+from nispcodec.core.counted import counted
 from nispcodec.core.errors import MeshError
 from nispcodec.io.read import wavefront
 
@@ -167,8 +168,8 @@ class _Binary:
         return values
 
 
-def read_elements(header: Header, data: bytes, name: str) -> None:
-    """Fill the header's elements from the file that it is the head of.
+def read_elements(header: Header, data: bytes, name: str) -> list[str]:
+    """Fill the header's elements from the file that it is the head of -> warnings.
 
     Raises MeshError, naming the file `name` and the row, where the file holds something else.
     """
@@ -183,6 +184,9 @@ def read_elements(header: Header, data: bytes, name: str) -> None:
                 raise MeshError(
                     f"{name}: {element.name} {row}: expected numbers as in the header, found: {why}"
                 ) from why
+    left = counted(queue.left, "number" if order is None else "byte")
+    said = f"{name}: left out {left} after the last row of the header's elements"
+    return [said] if queue.left > 0 else []
 
 
 def _read_row(element: Element, queue: _Text | _Binary) -> None:
