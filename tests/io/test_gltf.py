@@ -194,7 +194,32 @@ def test_only_the_default_scene_counts(tmp_path: Path) -> None:
     gltf = one_triangle()
     gltf.json["nodes"].append({"mesh": 0, "translation": [10, 0, 0]})
     gltf.json.update(scenes=[{"nodes": [0]}, {"nodes": [1]}], scene=1)
-    assert gltf.load(tmp_path).positions[0].tolist() == [10, 0, 0]
+    mesh = gltf.load(tmp_path)
+    assert mesh.positions.tolist() == [[x + 10, y, z] for x, y, z in CORNERS]
+    said = "left out 1 node with a mesh that scene {}, which is shown, does not have"
+    assert mesh.warnings == (f"a.glb: {said.format(1)}",)
+    del gltf.json["scene"]
+    mesh = gltf.load(tmp_path)
+    assert mesh.positions[0].tolist() == [0, 0, 0]
+    assert mesh.warnings == (f"a.glb: {said.format(0)}",)
+
+
+def test_without_a_default_scene_the_first_that_has_nodes_is_shown(tmp_path: Path) -> None:
+    gltf = one_triangle()
+    gltf.json["scenes"] = [{}, {"nodes": [0]}]
+    mesh = gltf.load(tmp_path)
+    assert (len(mesh.faces), mesh.warnings) == (1, ())
+
+
+def test_a_scene_that_shows_nothing_is_refused_in_a_sentence(tmp_path: Path) -> None:
+    gltf = one_triangle()
+    expected = r"a.glb: expected a visible mesh of triangles in the scene, found none"
+    gltf.json.update(scenes=[{}, {"nodes": [0]}], scene=0)
+    with pytest.raises(MeshError, match=rf"^{expected} \(a.glb: left out 1 node with a mesh that"):
+        gltf.load(tmp_path)
+    del gltf.json["nodes"], gltf.json["scenes"], gltf.json["scene"]
+    with pytest.raises(MeshError, match=f"^{expected}$"):
+        gltf.load(tmp_path)
 
 
 def test_primitives_share_vertices_and_keep_their_materials(tmp_path: Path) -> None:

@@ -150,7 +150,10 @@ class _Scene:
     def mesh(self, root: Element) -> TexturedMesh:
         """All that was added; the file's `root` names the place in messages."""
         if not self._count:
-            root.fail("a visible mesh of triangles in the scene", "; ".join(self._warnings))
+            why = f" ({'; '.join(self._warnings[:3])})" if self._warnings else ""
+            raise MeshError(
+                f"{root.place}: expected a visible mesh of triangles in the scene, found none{why}"
+            )
         uv_faces = np.concatenate(self._uv_faces)
         uvs, uv_faces = without_unusable(self._uvs.table(2), uv_faces, root.file, self._warnings)
         mesh = TexturedMesh(

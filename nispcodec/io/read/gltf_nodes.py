@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from nispcodec.core.arrays import Float64Array, Int64Array
+from nispcodec.core.counted import counted
 from nispcodec.io.read.gltf_buffers import Buffers
 from nispcodec.io.read.gltf_json import Element
 
@@ -39,7 +40,9 @@ def shown_meshes(root: Element, buffers: Buffers, warnings: list[str]) -> Iterat
     Raises MeshError, naming the JSON path, for nodes that are no trees and malformed transforms.
     """
     world = _Worlds(root)
-    stack = list(reversed(_root_nodes(root)))
+    scene = _scene(root)
+    roots = _root_nodes(root, scene)
+    stack = list(reversed(roots))
     seen: set[int] = set()
     hidden = 0
     while stack:
@@ -57,6 +60,12 @@ def shown_meshes(root: Element, buffers: Buffers, warnings: list[str]) -> Iterat
         stack.extend(reversed(_indices(node, "children")))
     if hidden:
         warnings.append(f"{root.file}: left out {hidden} node(s) of visibility false")
+    others = _meshes_outside(root, roots)
+    if others:
+        warnings.append(
+            f"{root.file}: left out {counted(others, 'node')} with a mesh that scene {scene}, "
+            f"which is shown, does not have"
+        )
 
 
 def _shown(root: Element, buffers: Buffers, world: _Worlds, node: Element, index: int) -> Shown:
@@ -154,9 +163,29 @@ class _Worlds:
         return matrix
 
 
-def _root_nodes(root: Element) -> list[int]:
+def _scene(root: Element) -> int:
+    """The scene that is shown: the file's default one, else the first that has nodes."""
+    default = root.optional("scene")
+    if default is not None:
+        return default
+    scenes = enumerate(root.entries("scenes"))
+    return next((index for index, scene in scenes if _indices(scene, "nodes")), 0)
+
+
+def _meshes_outside(root: Element, roots: list[int]) -> int:
+    """How many nodes with a mesh are no descendants of these nodes."""
+    nodes, inside, stack = root.entries("nodes"), set[int](), list(roots)
+    while stack:
+        index = stack.pop()
+        if index not in inside and 0 <= index < len(nodes):
+            inside.add(index)
+            stack.extend(_indices(nodes[index], "children"))
+    return sum(node.get("mesh") is not None for at, node in enumerate(nodes) if at not in inside)
+
+
+def _root_nodes(root: Element, scene: int) -> list[int]:
     if root.entries("scenes"):
-        return _indices(root.entry("scenes", root.integer("scene", 0)), "nodes")
+        return _indices(root.entry("scenes", scene), "nodes")
     nodes = root.entries("nodes")
     children = {child for node in nodes for child in _indices(node, "children")}
     return [index for index in range(len(nodes)) if index not in children]
