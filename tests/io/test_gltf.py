@@ -525,6 +525,15 @@ def test_specular_glossiness_becomes_diffuse_and_roughness(tmp_path: Path) -> No
     assert "specular-glossiness" in mesh.warnings[0]
 
 
+def test_specular_glossiness_counts_where_the_other_is_empty(tmp_path: Path) -> None:
+    gltf = textured()
+    glossy = {"diffuseFactor": [1, 0, 0, 1], "glossinessFactor": 0.75}
+    extensions = {"KHR_materials_pbrSpecularGlossiness": glossy}
+    gltf.json["materials"] = [{"pbrMetallicRoughness": {}, "extensions": extensions}]
+    (made,) = gltf.load(tmp_path).materials
+    assert (made.base_color, made.metallic, made.roughness) == ((1, 0, 0, 1), 0.0, 0.25)
+
+
 def test_specular_glossiness_has_the_image_where_the_other_has_factors_only(
     tmp_path: Path,
 ) -> None:

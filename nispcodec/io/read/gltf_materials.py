@@ -245,11 +245,11 @@ class GltfMaterials:
 def _glossy(material: Element) -> Element | None:
     """The specular-glossiness of a material, where its metallic-roughness has no picture to show.
 
-    Exporters that write both often leave the images to the older one.
+    Exporters that write both often leave the images to the older one, or all but an empty object.
     """
     glossy = material.extension(_GLOSSY)
     pbr = material.get("pbrMetallicRoughness")
-    if glossy is None or pbr is None:
+    if glossy is None or pbr is None or pbr.value == {}:
         return glossy
     pictured = glossy.get("diffuseTexture") is not None and pbr.get("baseColorTexture") is None
     return glossy if pictured else None
