@@ -717,6 +717,24 @@ def test_a_malformed_factor_costs_itself_alone(
     assert (made.base_color, made.metallic, made.roughness) == ((1.0, 1.0, 1.0, 1.0), 0.25, 1.0)
 
 
+def test_factors_beyond_their_range_are_cut_with_a_warning(tmp_path: Path) -> None:
+    gltf = textured(emissiveFactor=[3, 0, 0.5], alphaCutoff=2)
+    gltf.json["materials"][0]["pbrMetallicRoughness"].update(
+        baseColorFactor=[1, 1, 1.5, 1], metallicFactor=-1, roughnessFactor=0.5
+    )
+    mesh = gltf.load(tmp_path)
+    (made,) = mesh.materials
+    assert (made.emissive, made.alpha_cutoff) == ((1, 0, 0.5), 1)
+    assert (made.base_color, made.metallic, made.roughness) == ((1, 1, 1, 1), 0, 0.5)
+    pbr = "a.glb: materials[0].pbrMetallicRoughness: expected"
+    assert set(mesh.warnings) == {
+        "a.glb: materials[0]: expected emissiveFactor from 0 to 1, found 3, 0, 0.5: cut to it",
+        "a.glb: materials[0]: expected alphaCutoff from 0 to 1, found 2: cut to it",
+        f"{pbr} baseColorFactor from 0 to 1, found 1, 1, 1.5, 1: cut to it",
+        f"{pbr} metallicFactor from 0 to 1, found -1: cut to it",
+    }
+
+
 def test_a_malformed_sampler_repeats(tmp_path: Path) -> None:
     gltf = textured()
     gltf.json.update(samplers=[{"wrapS": 1}])

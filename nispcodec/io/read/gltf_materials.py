@@ -104,8 +104,7 @@ class GltfMaterials:
         source = _without_nan(self._root.entry("materials", index), self._warnings)
         glossy = _glossy(source)
         self._warn_of_extensions(source, glossy is not None)
-        black: tuple[float, ...] = (0.0, 0.0, 0.0)
-        red, green, blue = self._read(partial(source.numbers, "emissiveFactor", black), black)
+        red, green, blue = self._shares(source, "emissiveFactor", (0.0, 0.0, 0.0))
         infos, uvs = self._of_one_source(dict(_texture_infos(source, glossy)), source)
         factors = self._glossy_factors(glossy) if glossy else self._metallic_factors(source)
         material = Material(
@@ -114,9 +113,9 @@ class GltfMaterials:
             base_color=factors[0],
             metallic=factors[1],
             roughness=factors[2],
-            emissive=(_unit(red), _unit(green), _unit(blue)),
+            emissive=(red, green, blue),
             alpha_mode=self._read(partial(_alpha_mode, source), "opaque"),
-            alpha_cutoff=_unit(self._number(source, "alphaCutoff", 0.5)),
+            alpha_cutoff=self._share(source, "alphaCutoff", 0.5),
             double_sided=self._read(partial(source.flag, "doubleSided"), False),
             maps=self._maps(infos),
         )
@@ -126,14 +125,34 @@ class GltfMaterials:
         """Base color, metallic, roughness."""
         pbr = material.get("pbrMetallicRoughness") or Element({}, material.file, material.path)
         return (
-            self._read(partial(_color, pbr, "baseColorFactor"), _WHITE),
-            _unit(self._number(pbr, "metallicFactor", 1.0)),
-            _unit(self._number(pbr, "roughnessFactor", 1.0)),
+            self._color(pbr, "baseColorFactor"),
+            self._share(pbr, "metallicFactor", 1.0),
+            self._share(pbr, "roughnessFactor", 1.0),
         )
 
     def _glossy_factors(self, glossy: Element) -> Factors:
-        roughness = 1.0 - _unit(self._number(glossy, "glossinessFactor", 1.0))
-        return self._read(partial(_color, glossy, "diffuseFactor"), _WHITE), 0.0, roughness
+        roughness = 1.0 - self._share(glossy, "glossinessFactor", 1.0)
+        return self._color(glossy, "diffuseFactor"), 0.0, roughness
+
+    def _color(self, owner: Element, key: str) -> tuple[float, float, float, float]:
+        red, green, blue, alpha = self._shares(owner, key, _WHITE)
+        return red, green, blue, alpha
+
+    def _share(self, owner: Element, key: str, default: float) -> float:
+        """A number from 0 to 1: others are cut to it, with a warning."""
+        return self._cut(owner, key, (self._number(owner, key, default),))[0]
+
+    def _shares(self, owner: Element, key: str, default: tuple[float, ...]) -> tuple[float, ...]:
+        """As many numbers from 0 to 1 as the default has."""
+        return self._cut(owner, key, self._read(partial(owner.numbers, key, default), default))
+
+    def _cut(self, owner: Element, key: str, values: tuple[float, ...]) -> tuple[float, ...]:
+        if not all(0 <= value <= 1 for value in values):
+            found = ", ".join(f"{value:.9g}" for value in values)
+            self._warnings.append(
+                f"{owner.place}: expected {key} from 0 to 1, found {found}: cut to it"
+            )
+        return tuple(min(max(value, 0.0), 1.0) for value in values)
 
     def _number(self, owner: Element, key: str, default: float) -> float:
         return self._read(partial(owner.number, key, default), default)
@@ -290,11 +309,6 @@ def _texture_infos(material: Element, glossy: Element | None) -> Iterator[tuple[
             yield slot.name, info
 
 
-def _color(owner: Element, key: str) -> tuple[float, float, float, float]:
-    red, green, blue, alpha = owner.numbers(key, (1.0, 1.0, 1.0, 1.0))
-    return _unit(red), _unit(green), _unit(blue), _unit(alpha)
-
-
 def _alpha_mode(material: Element) -> str:
     mode = material.text("alphaMode", "OPAQUE").lower()
     return mode if mode in ("opaque", "mask", "blend") else material.fail("an alphaMode", mode)
@@ -311,7 +325,3 @@ def _uv_source(info: Element) -> UvSource:
         moved.number("rotation", 0.0),
         moved.numbers("scale", (1.0, 1.0)),
     )
-
-
-def _unit(value: float) -> float:
-    return min(max(value, 0.0), 1.0)
