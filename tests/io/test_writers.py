@@ -360,6 +360,18 @@ def test_what_a_format_cannot_hold_is_said(
     assert lost(mesh, ".glb", *maps, **material) == ""
 
 
+def test_stl_says_what_it_rounds_far_from_the_origin(mesh: TexturedMesh) -> None:
+    plain = TexturedMesh.geometry_only(mesh.positions, mesh.faces, "x")
+    assert losses(plain, "x.stl") == ()
+    far = replace(plain, positions=plain.positions + np.array([500_000.25, 5_000_000.3, 100.1]))
+    (said,) = losses(far, "x.stl")
+    assert said == (
+        "x.stl: left out digits of positions: STL rounds them by up to 0.2, where the extent is 1: "
+        "move the asset to the origin, or write GLB, OBJ or PLY, which keep them"
+    )
+    assert losses(far, "x.ply") == losses(far, "x.obj") == losses(far, "x.glb") == ()
+
+
 def test_what_a_format_holds_is_no_loss(mesh: TexturedMesh) -> None:
     assert lost(mesh, ".obj", TextureMap(0, ("clamp", "clamp")), metallic=0.5) == ""
     assert lost(mesh, ".obj", PLAIN, base_color=(1, 1, 1, 0.5), alpha_mode="blend") == ""

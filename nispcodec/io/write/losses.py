@@ -4,8 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
+import numpy as np
+
 from nispcodec.core.asset import Material, TexturedMesh, TextureMap
 from nispcodec.core.slots import BY_NAME, SLOTS
+
+# Positions rounded by more than this share of the extent are seen.
+ROUGH = 1e-4
 
 
 def gltf_losses(mesh: TexturedMesh) -> Iterator[str]:
@@ -39,6 +44,7 @@ def stl_losses(mesh: TexturedMesh) -> Iterator[str]:
     plain = _factors(Material())
     if mesh.has_uv.any() or any(each.maps or _factors(each) != plain for each in mesh.materials):
         yield "texture coordinates, materials and images: STL holds geometry alone"
+    yield from _rounding(mesh)
 
 
 def usdz_losses(mesh: TexturedMesh) -> Iterator[str]:
@@ -53,6 +59,18 @@ def trimesh_losses(mesh: TexturedMesh) -> Iterator[str]:
     if any(each.strength != 1 for each in _used(mesh.materials)):
         yield "strengths of maps: trimesh has none"
     yield from _sampling(mesh.materials, {("repeat", "repeat")}, "trimesh repeats images")
+
+
+def _rounding(mesh: TexturedMesh) -> Iterator[str]:
+    """STL has no place for an offset, as GLB and USDZ have, and no float64, as OBJ and PLY have."""
+    extent = float(np.ptp(mesh.positions, axis=0).max()) if len(mesh.positions) else 0.0
+    rounded = mesh.positions.astype(np.float32)
+    most = float(np.abs(mesh.positions - rounded).max(initial=0.0))
+    if most > ROUGH * extent:
+        yield (
+            f"digits of positions: STL rounds them by up to {most:.2g}, where the extent is "
+            f"{extent:.3g}: move the asset to the origin, or write GLB, OBJ or PLY, which keep them"
+        )
 
 
 def _formats(mesh: TexturedMesh) -> Iterator[str]:
