@@ -307,6 +307,18 @@ def test_maps_of_other_uvs_than_the_base_colors_are_left_out(
     )
 
 
+def test_one_accessor_under_two_numbers_is_one_set_of_uvs(tmp_path: Path) -> None:
+    gltf = textured(occlusionTexture={"index": 0, "texCoord": 1})
+    attributes = gltf.json["meshes"][0]["primitives"][0]["attributes"]
+    attributes["TEXCOORD_1"] = attributes["TEXCOORD_0"]
+    mesh = gltf.load(tmp_path)
+    assert set(mesh.materials[0].maps) == {"base_color", "occlusion"}
+    assert mesh.corner_uvs[0].tolist() == [[u, 1 - v] for u, v in UVS]
+    assert mesh.warnings == ()
+    attributes["TEXCOORD_1"] = gltf.accessor(UVS[::-1])
+    assert set(gltf.load(tmp_path).materials[0].maps) == {"base_color"}
+
+
 @pytest.mark.parametrize("there", [True, False])
 def test_missing_uvs_are_never_lost_without_a_word(tmp_path: Path, there: bool) -> None:
     gltf = textured({"texCoord": 1})

@@ -16,7 +16,7 @@ from nispcodec.io.read.gltf_buffers import Buffers, split_glb
 from nispcodec.io.read.gltf_draco import EXTENSION as DRACO
 from nispcodec.io.read.gltf_draco import DracoPrimitives
 from nispcodec.io.read.gltf_json import LARGEST, Element, parse_json
-from nispcodec.io.read.gltf_materials import GltfMaterials, UvSource
+from nispcodec.io.read.gltf_materials import GltfMaterials, SameUvs, UvSource
 from nispcodec.io.read.gltf_meshopt import EXTENSIONS as MESHOPT
 from nispcodec.io.read.gltf_nodes import Shown, shown_meshes, skinned
 from nispcodec.io.read.normals import with_creases
@@ -138,7 +138,9 @@ class _Scene:
         self._expect_moderate(primitive, len(shown.matrices) * len(once))
         faces = np.concatenate([np.zeros((0, 3), np.int64), *_turned(once, shown)])
         starts = first + count * np.arange(len(shown.matrices))
-        material, source = self._materials.use(primitive.optional("material"))
+        material, source = self._materials.use(
+            primitive.optional("material"), _same_uvs(attributes)
+        )
         uv_first = self._place_uvs(attributes, source, count, material)
         self._faces.append(faces + np.repeat(starts, len(once))[:, None])
         self._uv_faces.append(np.full_like(faces, -1) if uv_first is None else faces + uv_first)
@@ -324,6 +326,15 @@ class _Scene:
     def _warn(self, warning: str) -> None:
         if warning not in self._warnings:
             self._warnings.append(warning)
+
+
+def _same_uvs(attributes: Element) -> SameUvs:
+    """The texture coordinates that are there again under another number: light maps' often are."""
+    found: list[object] = []
+    while (accessor := attributes.get(f"TEXCOORD_{len(found)}")) is not None:
+        found.append(accessor.value)
+    firsts = enumerate(map(found.index, found))
+    return tuple((number, first) for number, first in firsts if number != first)
 
 
 def _influences(attributes: Element) -> list[tuple[int, int]]:

@@ -29,6 +29,8 @@ _GLOSSY = "KHR_materials_pbrSpecularGlossiness"
 _T = TypeVar("_T")
 # Base color, metallic, roughness.
 Factors = tuple[tuple[float, float, float, float], float, float]
+# Pairs (n, k): TEXCOORD_n is the accessor that TEXCOORD_k is, k being the smaller.
+SameUvs = tuple[tuple[int, int], ...]
 _WHITE = (1.0, 1.0, 1.0, 1.0)
 
 
@@ -76,14 +78,18 @@ class GltfMaterials:
         self._folder = folder
         self._warnings = warnings
         self._images: dict[int, int | None] = {}
-        self._made: dict[int | None, tuple[Material, UvSource]] = {}
+        self._made: dict[tuple[int | None, SameUvs], tuple[Material, UvSource]] = {}
 
-    def use(self, index: int | None) -> tuple[int, UvSource]:
-        """The number of material `index` of the file, None being the default one, and its UVs."""
-        if index not in self._made:
+    def use(self, index: int | None, same: SameUvs) -> tuple[int, UvSource]:
+        """The number of material `index` of the file, None being the default one, and its UVs.
+
+        `same` is of the primitive that has the material.
+        """
+        key = index, () if index is None else same
+        if key not in self._made:
             default = Material(metallic=1.0), UvSource()
-            self._made[index] = self._read(partial(self._make, index), default)
-        return list(self._made).index(index), self._made[index][1]
+            self._made[key] = self._read(partial(self._make, index, dict(same)), default)
+        return list(self._made).index(key), self._made[key][1]
 
     @property
     def materials(self) -> tuple[Material, ...]:
@@ -98,14 +104,14 @@ class GltfMaterials:
             self._warnings.append(f"{why}: left out")
             return default
 
-    def _make(self, index: int | None) -> tuple[Material, UvSource]:
+    def _make(self, index: int | None, same: dict[int, int]) -> tuple[Material, UvSource]:
         if index is None:
             return Material(metallic=1.0), UvSource()
         source = _without_nan(self._root.entry("materials", index), self._warnings)
         glossy = _glossy(source)
         self._warn_of_extensions(source, glossy is not None)
         red, green, blue = self._shares(source, "emissiveFactor", (0.0, 0.0, 0.0))
-        infos, uvs = self._of_one_source(dict(_texture_infos(source, glossy)), source)
+        infos, uvs = self._of_one_source(dict(_texture_infos(source, glossy)), source, same)
         factors = self._glossy_factors(glossy) if glossy else self._metallic_factors(source)
         material = Material(
             name=material_name(self._read(partial(source.text, "name", ""), ""), self._warnings)
@@ -228,14 +234,15 @@ class GltfMaterials:
         return (_WRAPS[modes[0]], _WRAPS[modes[1]]), chosen
 
     def _of_one_source(
-        self, infos: dict[str, Element], material: Element
+        self, infos: dict[str, Element], material: Element, same: dict[int, int]
     ) -> tuple[dict[str, Element], UvSource]:
         """The maps that use the base color's UVs, else those of the first map, and these UVs.
 
         A mesh has one set of UVs: a map with others would be looked up in wrong places.
         """
         sources = {
-            slot: self._read(partial(_uv_source, info), UvSource()) for slot, info in infos.items()
+            slot: self._read(partial(_uv_source, info, same), UvSource())
+            for slot, info in infos.items()
         }
         first = next(iter(sources), "")
         kept = {slot: info for slot, info in infos.items() if sources[slot] == sources[first]}
@@ -314,13 +321,14 @@ def _alpha_mode(material: Element) -> str:
     return mode if mode in ("opaque", "mask", "blend") else material.fail("an alphaMode", mode)
 
 
-def _uv_source(info: Element) -> UvSource:
+def _uv_source(info: Element, same: dict[int, int]) -> UvSource:
     texcoord = info.integer("texCoord", 0)
     moved = info.extension("KHR_texture_transform")
     if moved is None:
-        return UvSource(texcoord)
+        return UvSource(same.get(texcoord, texcoord))
+    texcoord = moved.integer("texCoord", texcoord)
     return UvSource(
-        moved.integer("texCoord", texcoord),
+        same.get(texcoord, texcoord),
         moved.numbers("offset", (0.0, 0.0)),
         moved.number("rotation", 0.0),
         moved.numbers("scale", (1.0, 1.0)),
