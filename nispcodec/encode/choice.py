@@ -46,7 +46,8 @@ class Choice:
 
     With `geometry` "auto", a form that is estimated to be clearly larger is not made at all.
     `halves` makes two of an asset whose bodies are sorted; `split` are those that are to be made.
-    `trial` makes networks of a short fit.
+    `trial` makes networks of a short fit. `document` leaves room for whatever is measured of it
+    later, which `written` knows.
     `loss`, where there is one, says which triangles are best, and which form, in the place of bytes
     and errors.
     """
@@ -59,10 +60,12 @@ class Choice:
         halves: Callable[[Sorted], Split | None],
         trial: Callable[[], Field],
         document: Made,
+        written: Callable[[Chosen], Document],
         loss: Loss | None = None,
     ) -> None:
         self._form, self._config, self._tuning = form, config, tuning
         self._halves, self._trial, self._document, self._loss = halves, trial, document, loss
+        self._written = written
         self._taken: Candidate | None = None
         # The least of triangles beside a trial; before one, nothing is known to cost more.
         self._triangle_cost = -math.inf
@@ -165,6 +168,14 @@ class Choice:
     def _triangle_bytes(self) -> int:
         """Bytes of a file of these, without its images."""
         return self._besides + self._of_target_size.size
+
+    @property
+    def _least_bytes(self) -> int:
+        """The same, with what is measured of them in place of the room for it."""
+        return own_bytes(pack(self._written(self._chosen(self._of_target_size))))
+
+    def _chosen(self, found: Candidate) -> Chosen:
+        return Chosen(self._document(None, found.parts), found.errors, self._field_bytes)
 
     def _better_split(self, size: float, distance: float) -> Split | None:
         """Halves that promise to take clearly fewer bytes than networks or triangles alone.
@@ -286,9 +297,9 @@ class Choice:
         """
         if not self._open:
             raise refused
-        if self._triangle_bytes > refused.found:
-            least = min(refused.least, self._triangle_bytes)
-            raise TargetSizeError(least, refused.found) from refused
+        least = self._least_bytes
+        if least > refused.found:
+            raise TargetSizeError(min(refused.least, least), refused.found) from refused
 
     def _sound_rival(self, errors: Errors, most: float) -> Candidate:
         """Triangles about as near as networks; nearer ones where those lose or make up surface too.
@@ -308,7 +319,7 @@ class Choice:
         too small.
         """
         found = self._of_least_loss(self._loss) if self._loss else self._taken or self._wanted()
-        return Chosen(self._document(None, found.parts), found.errors, self._field_bytes)
+        return self._chosen(found)
 
     def _rival(self, size: int, errors: Errors) -> Candidate | None:
         """Triangles to set against a fitted field, if some may be better, or as asked."""
@@ -346,8 +357,9 @@ class Choice:
             return found
         if not config.target_size:
             return self._form.best(self._nearest, self._worth * self._field_bytes or math.inf)
-        if self._triangle_bytes > config.target_size:
-            raise TargetSizeError(self._triangle_bytes, config.target_size)
+        least = self._least_bytes
+        if least > config.target_size:
+            raise TargetSizeError(least, config.target_size)
         return self._of_target_size
 
     @property

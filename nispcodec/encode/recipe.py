@@ -75,7 +75,11 @@ def _encoded(
         info = unmeasured(config, held is not None)
         return Document(frame, materials, textures, held, parts, info)
 
-    choice = Choice(form, config, tuning, partial(split, field), field.trial, document, loss)
+    def written(chosen: Chosen) -> Document:
+        return replace(chosen.document, info=measured(chosen, analysis, config))
+
+    halves, trial = partial(split, field), field.trial
+    choice = Choice(form, config, tuning, halves, trial, document, written, loss)
     if config.geometry == "mesh" or choice.settled:
         chosen = choice.triangles()
         info = measured(chosen, analysis, config)

@@ -16,7 +16,7 @@ from nispcodec.core.errors import FitError, TargetSizeError
 from nispcodec.core.mesh_part import MeshPart
 from nispcodec.core.network import NetworkSpec
 from nispcodec.encode.bodies import Sorted
-from nispcodec.encode.choice import Choice
+from nispcodec.encode.choice import Choice, Chosen
 from nispcodec.encode.config import FormConfig, Tuning
 from nispcodec.encode.mesh_form import coded_bytes
 from nispcodec.format import own_bytes, pack
@@ -74,7 +74,11 @@ def candidate(errors: Errors = EXACT) -> Any:
 
 def choice(form: Any, halves: Any = None, tuning: Tuning = TUNING, **options: Any) -> Choice:
     config = EncodeConfig(**options)
-    return Choice(form, config, tuning, lambda _: halves, tried, as_mesh)
+    return Choice(form, config, tuning, lambda _: halves, tried, as_mesh, as_chosen)
+
+
+def as_chosen(chosen: Chosen) -> Document:
+    return chosen.document
 
 
 def tried() -> Field:
@@ -412,7 +416,7 @@ def test_where_nothing_has_a_finite_loss_triangles_have_the_target_size() -> Non
         def loss(document: Document, lost: float = lost) -> float:
             return lost
 
-        found = Choice(form, how, TUNING, lambda _: None, tried, as_mesh, loss)
+        found = Choice(form, how, TUNING, lambda _: None, tried, as_mesh, as_chosen, loss)
         assert found.triangles().errors == errors
 
 
@@ -422,7 +426,7 @@ def test_what_loses_less_is_taken_whatever_its_size(of_mesh: float, taken: str) 
         return 2.0 if document.field else of_mesh
 
     form: Any = Told(1e9, of_least_loss=candidate(OFF))
-    found = Choice(form, EncodeConfig(), TUNING, lambda _: None, tried, as_mesh, loss)
+    found = Choice(form, EncodeConfig(), TUNING, lambda _: None, tried, as_mesh, as_chosen, loss)
     chosen = found.after_fit(FIELD, EXACT)
     assert ("field" if chosen.document.field else "mesh") == taken
     assert found.triangles().errors == OFF
@@ -435,5 +439,5 @@ def test_networks_that_were_asked_for_stay_whatever_loses_less() -> None:
     def loss(document: Document) -> float:
         return 1.0 if document.field else 0.0
 
-    found = Choice(form, how, TUNING, lambda _: None, tried, as_mesh, loss)
+    found = Choice(form, how, TUNING, lambda _: None, tried, as_mesh, as_chosen, loss)
     assert found.after_fit(FIELD, OFF).document.field

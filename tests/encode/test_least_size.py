@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
 import nispcodec
@@ -52,3 +53,9 @@ def test_the_least_size_can_be_had_and_is_that_of_the_smaller_form(
     assert least(mesh, found["auto"] - 1, "auto") == found["auto"]
     for geometry, size in found.items():
         assert len(pack(encoded(mesh, size, geometry).document)) <= size
+
+
+def test_one_triangle_takes_all_of_the_least_size() -> None:
+    mesh = soup(np.array([[[0.0, 0, 0], [1, 0, 0], [0, 1, 0]]]))
+    size = least(mesh, 1, "auto")
+    assert len(pack(encoded(mesh, size, "auto").document)) == size
