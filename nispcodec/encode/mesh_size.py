@@ -4,21 +4,38 @@ from __future__ import annotations
 
 import math
 from bisect import bisect_right
+from dataclasses import replace
+
+import numpy as np
 
 from nispcodec.core.mesh_part import MAX_GRID_BITS
 from nispcodec.encode.config import FormConfig
 from nispcodec.simplify.ladder import Candidate, Simplifier
 
+TINY = float(np.finfo(np.float64).tiny)
+
 
 def nearest_of_size(simplifier: Simplifier, most_bytes: float, config: FormConfig) -> Candidate:
     """The nearest candidate found of at most so many bytes; the smallest where none is.
 
-    All faces on grids as fine as there is room for, else as many faces as there is room for.
+    All faces where the finest grids have room; else the better of all of them on grids as fine as
+    there is room for, and of as many faces as there is room for.
     """
-    whole = _whole(simplifier, most_bytes, config)
-    if whole is not None:
-        return whole
-    return _coarser(simplifier, _most_faces(simplifier, most_bytes, config), most_bytes, config)
+    grids, all_faces = config.whole_bits, len(simplifier.source.triangles)
+    fit = 0
+    if all_faces * config.least_bytes_per_face <= most_bytes:
+        fit = bisect_right(
+            range(len(grids)), most_bytes, key=lambda grid: _whole(simplifier, grid, config).size
+        )
+    if fit == len(grids):
+        return _whole(simplifier, fit - 1, config)
+    fewer = _most_faces(simplifier, most_bytes, config)
+    found = [_coarser(simplifier, fewer, most_bytes, config)]
+    if fit:
+        found.append(_whole(simplifier, fit - 1, config))
+    # Here no error is too small to count.
+    exact = replace(config, negligible=TINY, negligible_uv=TINY)
+    return min(found, key=lambda each: exact.error_cost(each.errors))
 
 
 def fewest(simplifier: Simplifier) -> Candidate:
@@ -26,20 +43,13 @@ def fewest(simplifier: Simplifier) -> Candidate:
     return simplifier.balanced(min(simplifier.config.fewest, len(simplifier.source.triangles)))
 
 
-def _whole(simplifier: Simplifier, most_bytes: float, config: FormConfig) -> Candidate | None:
-    """Every face on the finest grids whose bytes suffice; None where not even the coarsest do."""
-    everything = len(simplifier.source.triangles)
-    if everything * config.least_bytes_per_face > most_bytes:
-        return None
-    bits = simplifier.bits_for(config.negligible, whole=True)
-    uv_bits = simplifier.uv_bits_for(config.negligible_uv)
-
-    def made(more: tuple[int, int]) -> Candidate:
-        finer = (bits + more[0], uv_bits + more[1])
-        return simplifier.candidate(everything, *(min(max(1, b), MAX_GRID_BITS) for b in finer))
-
-    fit = bisect_right(config.whole_bits, most_bytes, key=lambda more: made(more).size)
-    return made(config.whole_bits[fit - 1]) if fit else None
+def _whole(simplifier: Simplifier, grid: int, config: FormConfig) -> Candidate:
+    """Every face on grids of `config.whole_bits`, by their number."""
+    more, more_uv = config.whole_bits[grid]
+    bits = simplifier.bits_for(config.negligible, whole=True) + more
+    uv_bits = simplifier.uv_bits_for(config.negligible_uv) + more_uv
+    within = (min(max(1, each), MAX_GRID_BITS) for each in (bits, uv_bits))
+    return simplifier.candidate(len(simplifier.source.triangles), *within)
 
 
 def _most_faces(simplifier: Simplifier, most_bytes: float, config: FormConfig) -> Candidate:

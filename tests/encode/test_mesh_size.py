@@ -1,12 +1,13 @@
 from __future__ import annotations
 
+import numpy as np
 import pytest
 
 from nispcodec.core.progress import silent
 from nispcodec.encode.config import FormConfig
 from nispcodec.encode.mesh_form import MeshForm
 from nispcodec.geometry.analysis import analyze
-from tests.geometry.shapes import box_asset, soup, sphere
+from tests.geometry.shapes import box_asset, grid, soup, sphere
 
 CONFIG = FormConfig()
 
@@ -40,3 +41,17 @@ def test_all_faces_are_taken_where_they_fit_on_grids_as_fine_as_there_is_room_fo
     assert small.faces == large.faces == 12
     assert small.bits + small.uv_bits < large.bits + large.uv_bits
     assert large.errors.distance <= CONFIG.negligible
+
+
+def test_fewer_faces_are_taken_where_all_would_lie_on_coarse_grids() -> None:
+    """Those of a slanted sheet, of which two triangles say all."""
+    turned = np.linalg.qr(np.random.default_rng(0).normal(size=(3, 3)))[0]
+    sheet = MeshForm(analyze(soup(grid(20) @ turned, grid(20)[..., :2])), 0, CONFIG, silent)
+    everything = len(sheet.simplifier.source.triangles)
+    bits = sheet.simplifier.bits_for(CONFIG.negligible, whole=True) + CONFIG.whole_bits[0][0]
+    uv_bits = sheet.simplifier.uv_bits_for(CONFIG.negligible_uv)
+    whole = sheet.simplifier.candidate(everything, bits, uv_bits)
+    found = sheet.of_size(whole.size)
+    assert found.faces < everything
+    assert found.bits > whole.bits
+    assert found.errors.distance < whole.errors.distance
