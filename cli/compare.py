@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from .columns import FRAME, explanations
+from .errors import warn
 from .progress import progress_options, shown
 from .ranges import Whole
 from .report import print_group, print_json
@@ -16,10 +17,15 @@ from .subcommand import json_option, subcommand
 from .verdict import bounds, verdict
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from nispcodec.core.asset import TexturedMesh
     from nispcodec.core.progress import Listener
     from nispcodec.metrics.compare import Report
     from nispcodec.model import NispModel
+
+MOST_APART = 2.0
+"""Ratio of radii from which on they are told of: no codec is that far off."""
 
 
 @subcommand("compare", "Measure a decode against the original.")
@@ -50,6 +56,7 @@ def command(
     Example: nisp compare model.obj model.nisp --explain
     """
     mesh, other = read_mesh(original), _read(decoded)
+    warn(_other_unit(mesh, other, decoded))
     with shown("compare", progress, quiet) as listen:
         report = _compared(mesh, other, resolution, listen, how)
     if as_json:
@@ -67,6 +74,19 @@ def _read(path: Path) -> TexturedMesh | NispModel:
     from nispcodec.model import NispModel
 
     return NispModel(parsed(read_file(path), path)) if is_nisp(path) else read_mesh(path)
+
+
+def _other_unit(
+    original: TexturedMesh, decoded: TexturedMesh | NispModel, path: Path
+) -> Iterator[str]:
+    """A warning where one is several times as large as the other."""
+    from nispcodec.metrics.surface import frame_of
+    from nispcodec.model import NispModel
+
+    frame = decoded.document.frame if isinstance(decoded, NispModel) else frame_of(decoded)
+    ratio = frame.radius / frame_of(original).radius
+    if max(ratio, 1 / ratio) > MOST_APART:
+        yield f"{path}: {ratio:.4g} times as large as the original: is it in the same unit?"
 
 
 def _compared(

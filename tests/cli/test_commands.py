@@ -3,6 +3,7 @@ from __future__ import annotations
 import json
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -119,6 +120,14 @@ def test_compare_names_the_unreadable_mesh(mesh: Path, tmp_path: Path) -> None:
     broken = tmp_path / "broken.obj"
     broken.write_text("v 0 0\n")
     refused(nisp("compare", mesh, broken), "broken.obj")
+
+
+def test_compare_tells_of_another_unit(mesh: Path, tmp_path: Path) -> None:
+    asset, larger = load_mesh(mesh), tmp_path / "millimeters.obj"
+    replace(asset, positions=1000 * asset.positions).save(larger)
+    told = nisp("compare", mesh, larger, "--samples", 500)
+    assert "millimeters.obj: 1000 times as large as the original" in told.stderr
+    assert "times as large" not in nisp("compare", mesh, mesh, "--samples", 500).stderr
 
 
 POINTS = np.array([[1.0, 2.0, 3.0], [2.5, 2.0, 3.0]])
