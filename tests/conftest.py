@@ -20,6 +20,6 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
 
 
 def pytest_collection_finish() -> None:
-    """What thousands of tests keep is no garbage: each stage of an encode collects it once more."""
+    """What thousands of tests keep is no garbage: every encode would look through all of it."""
     gc.collect()
     gc.freeze()

@@ -18,8 +18,6 @@ FLATTEST = 1e-10
 NO_AREA = 1e-7
 # Squares of larger coordinates' differences would leave float32 and soon float64.
 LARGEST_COORDINATE = 1e15
-
-
 # Warnings that an error ends with.
 _MOST_SAID = 5
 
